@@ -1,0 +1,34 @@
+// The triangles of the surface. Every cell between four neighbouring texel centres is cut by the diagonal from
+// (i+1, j) to (i, j+1): facet 2c holds the corner (i, j), facet 2c+1 the corner (i+1, j+1), where c numbers the
+// cells row by row. A wrapping map has a cell per texel, an open one a cell less in each direction.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "surface/surface.h"
+
+namespace hemibake {
+
+// Corners of a facet in texels, not wrapped: x, y may equal the width or height on a wrapping map.
+struct FacetCorners {
+  std::array<glm::ivec2, 3> texel;  // [0] is the right-angled corner
+};
+
+uint32_t facet_count(const Surface& surface);
+uint32_t facet_columns(const Surface& surface);  // cells in a row
+
+FacetCorners facet_corners(const Surface& surface, uint32_t facet);
+
+// Corner positions in units of texels: x = i, y = j, z = height / texel size (unwrapped).
+std::array<glm::dvec3, 3> facet_positions_texels(const Surface& surface, uint32_t facet);
+
+// Unit normal, z > 0.
+glm::dvec3 facet_normal(const Surface& surface, uint32_t facet);
+
+// Area of the facet over the area of its shadow on the ground (≥ 1): 1 / normal.z.
+double facet_area_ratio(const Surface& surface, uint32_t facet);
+
+}  // namespace hemibake

@@ -1,0 +1,59 @@
+// What a tracer answers: how much sky a receiver sees, how much light that is, and which patches block the rest.
+//
+// Receivers are texels (with their shading normals) and patches; patches are what light is re-emitted by: facets of
+// the surface (surface/facets.h), or the texels themselves, with the same index as the texel.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+namespace hemibake {
+
+enum class Patches { kFacets, kTexels };
+
+// E_{b+1} of the receiver gets weight · E_b of the patch.
+struct Link {
+  uint32_t patch;
+  float weight;
+};
+
+// What one receiver sees. Σ weights + direct_over_pi = 1 to rounding.
+struct Row {
+  double visible_fraction = 0;  // α, uniform fraction of the hemisphere about the normal that is sky, 0..1
+  double direct_over_pi = 0;    // E₀/π, cosine-weighted fraction, 0..1
+  glm::dvec3 bent_normal{0};    // unit mean direction of the sky seen; the normal itself where none is seen
+  std::vector<Link> links;      // ascending by patch, each patch once; empty where links were not asked for
+};
+
+// One ray of a texel, for replay.
+struct RayRecord {
+  glm::dvec3 direction;   // unit, world frame
+  double cosine_weight;   // share of E₀/π, or of the links
+  double uniform_weight;  // share of α
+  bool hit;
+  uint32_t facet;           // where hit
+  glm::dvec2 hit_texel;     // where hit: position in texels, texel centres at integers, wrapped into the map
+  double distance_m;        // where hit: along the ray
+  int tiles_crossed;        // map copies entered after the first
+};
+
+struct TracerCounts {
+  uint64_t rays = 0;       // rays (or azimuths) traced
+  uint64_t cut_short = 0;  // rays still below the highest texel where the tracer stops following them, taken for sky
+};
+
+// A surface made ready for tracing. Safe to call from many threads; the answer depends on the receiver only.
+class Tracer {
+ public:
+  virtual ~Tracer() = default;
+  virtual uint32_t patch_count() const = 0;
+  // Fills `row`, its links only if `with_links`. Adds to `counts`.
+  virtual void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const = 0;
+  virtual void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const = 0;
+  // Every ray trace_texel shoots for this texel, in order.
+  virtual std::vector<RayRecord> replay_texel(uint32_t texel) const = 0;
+};
+
+}  // namespace hemibake

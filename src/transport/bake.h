@@ -1,0 +1,22 @@
+// The planes of a finished bake: what BAKE.exr holds. Planes that were not asked for are empty.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/grid.h"
+
+namespace hemibake {
+
+struct Bake {
+  int width = 0;
+  int height = 0;
+  Grid<float> visible_fraction;         // channel `ao`: α, 0..1
+  std::vector<Grid<float>> irradiance;  // channels `irradiance.00`…: E_b at albedo 1, 0..π
+  Grid<float> total;                    // channel `total`: all bounces at albedo 1, 0..π
+  Grid<float> residual;                 // channel `residual`: (π − Σ)/π not yet summed at albedo 1
+  Grid<glm::vec3> normals;              // channels `normal.X/Y/Z`
+  Grid<glm::vec3> bent_normals;         // channels `bent.X/Y/Z`
+};
+
+}  // namespace hemibake
