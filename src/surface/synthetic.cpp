@@ -84,7 +84,7 @@ SyntheticMap synthesize(SyntheticKind kind, const SyntheticOptions& requested) {
   const SyntheticOptions options = checked(kind, requested);
   switch (kind) {
     case SyntheticKind::kBricks:
-      return {stretched(make_noise(options)), 0.1};
+      return {stretched(make_bricks(options)), 0.1};
     case SyntheticKind::kShapes:
       return {stretched(make_noise(options)), 0.45};
     case SyntheticKind::kConcrete:
