@@ -163,6 +163,7 @@ void write_exr(const fs::path& path, int width, int height, std::span<const Plan
                const Provenance& provenance) {
   OIIO::ImageSpec spec = make_spec(width, height, planes, OIIO::TypeDesc::FLOAT, provenance);
   spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "");  // else it writes the time of day, and no two runs give the same bytes
   Writer(path, "openexr", spec).write<float>(planes, [](float value, size_t, size_t) { return value; });
 }
 

@@ -122,6 +122,9 @@ TEST(BakeFile, SameBytesEveryTimeAtAnyThreadCount) {
   write_bake(folder / "b.exr", bake, sample_provenance());
   set_thread_count(0);
   EXPECT_EQ(read_bytes(folder / "a.exr"), read_bytes(folder / "b.exr"));
+  // The same a second later, too: the date of writing is left empty.
+  using namespace std::string_literals;
+  EXPECT_THAT(read_bytes(folder / "a.exr"), HasSubstr("capDate\0string\0\0\0\0\0"s));
 }
 
 TEST(BakeFile, NanIsABugThatNamesChannelAndTexel) {
