@@ -154,7 +154,7 @@ double face_height(const Wall& wall, const BrickPoint& brick, double x, double y
   double height = kFaceHeight + 0.010 * brick.random(5) - 0.013 * wear;
   height +=
       wear * (0.06 * brick.random(6) * brick.x + 0.12 * brick.random(7) * brick.y - 3.0 * brick.y * brick.y);
-  height += (0.005 + 0.018 * wear) * wall.noise(x, y, 13, Stream::kFace);
+  height += (0.002 + 0.021 * wear) * wall.noise(x, y, 13, Stream::kFace);
   height += (0.0005 + 0.0085 * wear) * wall.fractal(x, y, 45, 0.6, Stream::kGrain);
   height += grit_height(wall, x, y);
   // Spalled skin: a sharp-edged shallow layer gone.
