@@ -86,9 +86,9 @@ SyntheticMap synthesize(SyntheticKind kind, const SyntheticOptions& requested) {
     case SyntheticKind::kBricks:
       return {stretched(make_bricks(options)), 0.1};
     case SyntheticKind::kShapes:
-      return {stretched(make_noise(options)), 0.45};
+      return {stretched(make_shapes(options)), 0.45};
     case SyntheticKind::kConcrete:
-      return {stretched(make_noise(options)), 0.05};
+      return {stretched(make_concrete(options)), 0.05};
     case SyntheticKind::kNoise:
       return {stretched(make_noise(options)), 0.1};
     case SyntheticKind::kFlat:
