@@ -26,6 +26,9 @@ enum class Stream {
   kGrain,
   kSpalls,
   kPits,
+  kPitShape,
+  kGrit,
+  kCracks,
   kMortar,
   kSmear,
   kHoles,
@@ -103,7 +106,7 @@ double outline_distance(const Wall& wall, const BrickPoint& brick, double x, dou
   const double qy = std::abs(brick.y) - (brick.half_height - kCornerRadius);
   const double outside = std::hypot(std::max(qx, 0.0), std::max(qy, 0.0)) + std::min(std::max(qx, qy), 0.0);
   const double fray = 0.0045 * wall.fractal(x, y, 36, 0.6, Stream::kOutline);
-  const double bite = 0.014 * smooth_step(0.18, 0.55, wall.noise(x, y, 22, Stream::kBites));
+  const double bite = 0.013 * smooth_step(0.15, 0.6, wall.fractal(x, y, 20, 0.6, Stream::kBites));
   return kCornerRadius - outside + fray - bite;
 }
 
@@ -111,7 +114,7 @@ double outline_distance(const Wall& wall, const BrickPoint& brick, double x, dou
 double chip_depth(const Wall& wall, const BrickPoint& brick, double x, double y) {
   const int corner = (brick.x > 0 ? 1 : 0) + (brick.y > 0 ? 2 : 0);
   if (brick.random(10 + corner) < 0.2) return 0;
-  const double size = 0.012 + 0.022 * std::abs(brick.random(20 + corner));
+  const double size = 0.015 + 0.035 * std::abs(brick.random(20 + corner));
   const double lean =
       0.5 + 0.4 * brick.random(30 + corner);  // of the fracture, towards the bed or the head joint
   const double from_corner = 2 * (lean * (brick.half_width - std::abs(brick.x)) +
@@ -122,30 +125,49 @@ double chip_depth(const Wall& wall, const BrickPoint& brick, double x, double y)
 
 double pit_depth(const Wall& wall, double x, double y) {
   const Spot spot = nearest_spot(x, y, wall.tile, 40, wall.stream(Stream::kPits));
-  if (hash_unit(spot.bits, 1, 0) > 0.3) return 0;
+  if (hash_unit(spot.bits, 1, 0) > 0.25) return 0;
   const double size = hash_unit(spot.bits, 1, 1);
-  const double radius = 0.002 + 0.004 * size * size;
-  const double t = spot.distance / radius;
-  return t < 1 ? 2.2 * radius * (1 - t * t) : 0.0;
+  const double radius = 0.002 + 0.006 * size * size * size;
+  // Not round: the distance is warped by noise.
+  const double t = spot.distance / radius + 0.6 * wall.fractal(x, y, 90, 0.5, Stream::kPitShape);
+  return t < 1 ? 2 * radius * (1 - std::max(0.0, t)) : 0.0;
+}
+
+// Grit baked into the brick that stands out of the weathered face.
+double grit_height(const Wall& wall, double x, double y) {
+  const Spot spot = nearest_spot(x, y, wall.tile, 50, wall.stream(Stream::kGrit));
+  if (hash_unit(spot.bits, 1, 0) > 0.3) return 0;
+  const double radius = 0.003 + 0.005 * hash_unit(spot.bits, 1, 1);
+  return 0.7 * std::max(0.0, radius - spot.distance);
+}
+
+// A crack follows the zero line of a noise, on bricks that have one.
+double crack_depth(const Wall& wall, const BrickPoint& brick, double x, double y) {
+  if (brick.random(9) < 0.6) return 0;
+  const double from_line = std::abs(wall.fractal(x, y, 6, 0.4, Stream::kCracks));
+  return 0.009 * (1 - smooth_step(0.0, 0.016, from_line));
 }
 
 double face_height(const Wall& wall, const BrickPoint& brick, double x, double y) {
-  const double roughness = 0.8 + 0.5 * brick.random(4);
-  double height = kFaceHeight + 0.008 * brick.random(5);
-  height += 0.035 * brick.random(6) * brick.x + 0.07 * brick.random(7) * brick.y;
-  height += 0.010 * wall.fractal(x, y, 14, 0.5, Stream::kFace);
-  height += roughness * 0.0035 * wall.fractal(x, y, 110, 0.7, Stream::kGrain);
+  // Hard-burnt bricks have weathered least: they are smoother, flatter and stand proud.
+  const double wear = 0.5 + 0.5 * brick.random(4);
+  double height = kFaceHeight + 0.010 * brick.random(5) - 0.013 * wear;
+  height +=
+      wear * (0.06 * brick.random(6) * brick.x + 0.12 * brick.random(7) * brick.y - 3.0 * brick.y * brick.y);
+  height += (0.002 + 0.021 * wear) * wall.noise(x, y, 13, Stream::kFace);
+  height += (0.0005 + 0.0085 * wear) * wall.fractal(x, y, 45, 0.6, Stream::kGrain);
+  height += grit_height(wall, x, y);
   // Spalled skin: a sharp-edged shallow layer gone.
   const double spall = wall.fractal(x, y, 9, 0.55, Stream::kSpalls) + 0.25 * brick.random(8);
   height -= 0.006 * smooth_step(0.22, 0.26, spall);
-  return height - pit_depth(wall, x, y) - chip_depth(wall, brick, x, y);
+  return height - pit_depth(wall, x, y) - chip_depth(wall, brick, x, y) - crack_depth(wall, brick, x, y);
 }
 
 double mortar_height(const Wall& wall, double x, double y) {
-  double height = 0.004 * wall.fractal(x, y, 70, 0.75, Stream::kMortar);
+  double height = 0.007 * wall.fractal(x, y, 60, 0.7, Stream::kMortar);
   // Smeared full in places, washed out in others.
-  height += 0.045 * smooth_step(0.1, 0.6, wall.noise(x, y, 7, Stream::kSmear));
-  return height - 0.03 * smooth_step(0.05, 0.6, wall.noise(x, y, 26, Stream::kHoles));
+  height += 0.036 * smooth_step(0.0, 0.5, wall.fractal(x, y, 7, 0.5, Stream::kSmear));
+  return height - 0.034 * smooth_step(0.05, 0.6, wall.fractal(x, y, 24, 0.5, Stream::kHoles));
 }
 
 double wall_height(const Wall& wall, double x, double y) {
