@@ -44,4 +44,47 @@ T bounce_factor(X ao, const T& a, const T& b, const T& c) {
   return ao * rest * sqrt(rest) * a * exp(-b * pow(ao, c));
 }
 
+// The bounded model (fits/README.md says how it was chosen). With F₀ = α(1 + (1−α) s(α)) every s in 0..1 lies
+// between plain AO and α(2−α), the most that any surface lets in (all visible sky straight overhead); here s
+// = k0 + (k1 − k0) α², so that k0 and k1 in 0..1 are all the constraint there is, and F₀ rises from 0 to 1.
+template <class T, class X>
+T bounded_direct_factor(X ao, const T& k0, const T& k1) {
+  return ao * (T(1) + (X(1) - ao) * (k0 + (k1 - k0) * (ao * ao)));
+}
+
+// 1 − F₀ of the above, without the cancellation near α = 1.
+template <class T, class X>
+T bounded_blocked_factor(X ao, const T& k0, const T& k1) {
+  return (X(1) - ao) * (T(1) - ao * (k0 + (k1 - k0) * (ao * ao)));
+}
+
+// q = 1 − τ, the share of the light under way that each bounce sends out to the sky: F₀ⁿ. n = 1 is exact in a
+// spherical pit (every point sees every other alike); n < 1: light leaves sooner than a texel's own F₀ says.
+template <class T, class X>
+T escape_share(X direct, const T& n) {
+  using std::pow;
+  return pow(direct, n);
+}
+
+// E/π over all bounces, notes eq. 10 with F₁ = (1 − F₀)(1 − τ), so that all light is accounted for at albedo
+// 1: F₀ + (1 − F₀) ρq/(1 − ρ + ρq). The quotient is 0 where both its parts are (ρ = 1 in total darkness).
+// direct: F₀; blocked: 1 − F₀; escape: q; albedo: ρ; all 0..1. tiny: the smallest normal number of the type.
+template <class T, class X>
+T total_factor(const T& direct, const T& blocked, const T& escape, X albedo, X tiny) {
+  const T out = albedo * escape;
+  const T under_way = X(1) - albedo + out;
+  return direct + blocked * (under_way > T(tiny) ? out / under_way : T(0));
+}
+
+// Multi-bounce visibility as a cubic, Jimenez et al., "Practical Real-Time Strategies for Accurate Indirect
+// Occlusion", 2016, chapter 5, without its max(V, ·): ((aV + b)V + c)V with a = p0 ρ + p1, b = p2 ρ + p3, c =
+// p4 ρ + p5. visibility: E₀/π, the cosine-weighted visible fraction, not α.
+template <class T, class X>
+T jimenez_cubic(X visibility, X albedo, const T* p) {
+  const T a = p[0] * albedo + p[1];
+  const T b = p[2] * albedo + p[3];
+  const T c = p[4] * albedo + p[5];
+  return ((a * visibility + b) * visibility + c) * visibility;
+}
+
 }  // namespace hemibake

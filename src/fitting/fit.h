@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,12 +28,23 @@ struct CurvePoint {
   double ao = 0;      // abscissa α
   double value = 0;   // E_b/π at albedo 1
   double weight = 1;  // relative, above 0; the weights of a fit have mean 1
+  double albedo = 1;  // ρ, where the value depends on it
 };
 
 // The points of one bounce, in bin order; empty bins are left out, with Weights::standard_error also bins of
 // fewer than two texels. bounce: 0..bounce_count − 1. Throws InputError where the weights need counts that
 // `curves` lacks.
 std::vector<CurvePoint> curve_points(const Curves& curves, int bounce, Abscissa abscissa, Weights weights);
+
+// E/π of all bounces of one bin at albedo `albedo` (0..1): Σ ρᵇ E_b/π, the bounces after the last stored one
+// as a geometric series with the ratio of the last two.
+double total_over_pi(const CurveBin& bin, double albedo);
+
+// The points (α, ρ, total_over_pi), for each usable bin one after another for each of `albedos`. The spread
+// of a total is at most the sum of the spreads of its bounces: that stands for it with
+// Weights::standard_error.
+std::vector<CurvePoint> total_points(const Curves& curves, std::span<const double> albedos, Abscissa abscissa,
+                                     Weights weights);
 
 struct FitParameter {
   std::string name;
@@ -49,9 +61,9 @@ struct Fit {
   // to the spread of the parameters where the errors of the points are independent with variances
   // proportional to 1/w.
   std::vector<double> covariance;
-  double rms = 0;        // of the residuals, unweighted, in E/π
-  double max_error = 0;  // largest residual, in E/π
-  int points = 0;
+  double rms = 0;              // of the residuals, unweighted, in E/π
+  double max_error = 0;        // largest residual, in E/π
+  int points = 0;              // residuals
   std::optional<double> aicc;  // Akaike's criterion, small-sample form; none where points <= parameters + 2
   Abscissa abscissa = Abscissa::center;
   Weights weights = Weights::none;

@@ -86,7 +86,7 @@ bool on_bound(const ParameterRange& range, double value) {
 
 // s²(JᵀJ)⁻¹ over the parameters that are free; the rows and columns of those on a bound are 0.
 Matrix covariance(const Formula& formula, const Evaluation& at, const std::vector<double>& parameters,
-                  const std::vector<Eigen::Index>& free) {
+                  const std::vector<Eigen::Index>& free, double observations) {
   const Eigen::Index all = at.jacobian.cols();
   Matrix result = Matrix::Zero(all, all);
   const Eigen::Index count = static_cast<Eigen::Index>(free.size());
@@ -107,7 +107,7 @@ Matrix covariance(const Formula& formula, const Evaluation& at, const std::vecto
     throw CheckError(fmt::format(
         "fit of {}: the covariance is singular, the points do not determine every parameter", formula.model));
   }
-  const double variance = at.residuals.squaredNorm() / static_cast<double>(at.residuals.size() - count);
+  const double variance = at.residuals.squaredNorm() / (observations - static_cast<double>(count));
   const Eigen::MatrixXd half =
       length.cwiseInverse().asDiagonal() * svd.matrixV() * singular.cwiseInverse().asDiagonal();
   result(free, free) = variance * half * half.transpose();
@@ -116,46 +116,44 @@ Matrix covariance(const Formula& formula, const Evaluation& at, const std::vecto
 
 // Burnham & Anderson, "Model Selection and Multimodel Inference", 2002, eq. 7.3: n ln(Σ w r²/n) − Σ ln w, the
 // variance counted as one parameter more.
-std::optional<double> small_sample_aic(const Evaluation& at, std::span<const CurvePoint> points) {
-  const double n = static_cast<double>(points.size());
+// n: observations; the logarithm of a weight counts as its share of one.
+std::optional<double> small_sample_aic(const Evaluation& at, std::span<const CurvePoint> points, double n) {
+  const double share = n / static_cast<double>(points.size());
   const double k = static_cast<double>(at.jacobian.cols()) + 1;
   const double sum = at.residuals.squaredNorm();
   if (n - k - 1 <= 0 || sum <= 0) return std::nullopt;
   double log_weights = 0;
   for (const CurvePoint& point : points) log_weights += std::log(point.weight);
-  return n * std::log(sum / n) - log_weights + 2 * k + 2 * k * (k + 1) / (n - k - 1);
+  return n * std::log(sum / static_cast<double>(points.size())) - share * log_weights + 2 * k +
+         2 * k * (k + 1) / (n - k - 1);
 }
 
 }  // namespace
 
 Fit minimize(const Formula& formula, std::span<const CurvePoint> points,
              std::unique_ptr<ceres::CostFunction> cost) {
-  if (points.size() <= formula.parameters.size()) {
+  const size_t count = formula.parameters.size();
+  const size_t observations = points.size() / static_cast<size_t>(formula.points_per_observation);
+  if (observations <= count) {
     throw InputError(fmt::format("{} usable bins, expected at least {} for the {} parameters of {}",
-                                 points.size(), formula.parameters.size() + 1, formula.parameters.size(),
-                                 formula.model));
+                                 observations, count + 1, count, formula.model));
   }
   const std::vector<double> found = solve(formula, cost.get(), best_start(formula, *cost));
   const Evaluation at = evaluate(*cost, found);
+  std::vector<Eigen::Index> free;
+  for (size_t p = 0; p < count; ++p) {
+    if (!on_bound(formula.parameters[p], found[p])) free.push_back(static_cast<Eigen::Index>(p));
+  }
+  const Matrix spread = covariance(formula, at, found, free, static_cast<double>(observations));
 
   Fit fit;
   fit.model = formula.model;
   fit.formula = formula.text;
-  fit.points = static_cast<int>(points.size());
-  fit.aicc = small_sample_aic(at, points);
-  std::vector<Eigen::Index> free;
-  for (size_t p = 0; p < found.size(); ++p) {
-    if (!on_bound(formula.parameters[p], found[p])) free.push_back(static_cast<Eigen::Index>(p));
-  }
-  const Matrix spread = covariance(formula, at, found, free);
+  for (size_t p = 0; p < count; ++p)
+    fit.parameters.push_back({formula.parameters[p].name, found[p], std::nullopt});
+  for (const Eigen::Index p : free)
+    fit.parameters[static_cast<size_t>(p)].standard_error = std::sqrt(spread(p, p));
   fit.covariance.assign(spread.data(), spread.data() + spread.size());
-  for (size_t p = 0; p < found.size(); ++p) {
-    const Eigen::Index index = static_cast<Eigen::Index>(p);
-    FitParameter parameter{formula.parameters[p].name, found[p], std::nullopt};
-    if (!on_bound(formula.parameters[p], found[p]))
-      parameter.standard_error = std::sqrt(spread(index, index));
-    fit.parameters.push_back(parameter);
-  }
   double sum = 0;
   for (size_t i = 0; i < points.size(); ++i) {
     const double error = at.residuals[static_cast<Eigen::Index>(i)] / std::sqrt(points[i].weight);
@@ -163,6 +161,8 @@ Fit minimize(const Formula& formula, std::span<const CurvePoint> points,
     fit.max_error = std::max(fit.max_error, std::abs(error));
   }
   fit.rms = std::sqrt(sum / static_cast<double>(points.size()));
+  fit.points = static_cast<int>(points.size());
+  fit.aicc = small_sample_aic(at, points, static_cast<double>(observations));
   return fit;
 }
 

@@ -27,6 +27,7 @@ struct Formula {
   std::string text;   // the formula for a human
   std::vector<ParameterRange> parameters;
   std::vector<std::vector<double>> starts;  // parameter sets to begin from; the one of least cost is taken
+  int points_per_observation = 1;           // points that share one error (fit.h, "observation")
 };
 
 // Residuals √w·(formula − value) of `points`, differentiated by Ceres.
