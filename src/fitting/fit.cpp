@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "core/constants.h"
 #include "core/error.h"
@@ -15,6 +17,29 @@ namespace {
 // Smallest standard error of a bin's mean of E/π that is believed. A bin of flat ground has no spread at all,
 // and would outweigh every other without limit; the rays of a bake leave about this much.
 constexpr double kSmallestStandardError = 1e-4;
+
+constexpr std::array kAbscissas = {std::pair{Abscissa::center, "center"},
+                                   std::pair{Abscissa::published, "published"}};
+constexpr std::array kWeights = {std::pair{Weights::none, "none"}, std::pair{Weights::count, "count"},
+                                 std::pair{Weights::standard_error, "stderr"}};
+
+template <class Table, class Value>
+std::string name_of(const Table& table, Value value) {
+  for (const auto& [entry, name] : table) {
+    if (entry == value) return name;
+  }
+  throw std::logic_error("a value without a name");
+}
+
+template <class Table>
+auto value_of(const Table& table, const std::string& text) {
+  std::string known;
+  for (const auto& [entry, name] : table) {
+    if (text == name) return entry;
+    known += (known.empty() ? "" : ", ") + std::string(name);
+  }
+  throw InputError(fmt::format("'{}', expected one of {}", text, known));
+}
 
 double raw_weight(double count, double stddev_over_pi, Weights weights) {
   switch (weights) {
@@ -111,18 +136,9 @@ double parameter_value(const Fit& fit, const std::string& name) {
   throw std::logic_error(fmt::format("fit of {} has no parameter {}", fit.model, name));
 }
 
-std::string to_string(Abscissa abscissa) { return abscissa == Abscissa::center ? "center" : "published"; }
-
-std::string to_string(Weights weights) {
-  switch (weights) {
-    case Weights::none:
-      return "none";
-    case Weights::count:
-      return "count";
-    case Weights::standard_error:
-      return "stderr";
-  }
-  throw std::logic_error("weights of an unknown kind");
-}
+std::string to_string(Abscissa abscissa) { return name_of(kAbscissas, abscissa); }
+std::string to_string(Weights weights) { return name_of(kWeights, weights); }
+Abscissa abscissa_from_string(const std::string& text) { return value_of(kAbscissas, text); }
+Weights weights_from_string(const std::string& text) { return value_of(kWeights, text); }
 
 }  // namespace hemibake

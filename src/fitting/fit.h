@@ -69,10 +69,20 @@ struct Fit {
   Weights weights = Weights::none;
 };
 
+// A fit and the name it has in FIT.json.
+struct NamedFit {
+  std::string name;
+  Fit fit;
+};
+
 // Value of the parameter called `name`; a bug if there is none.
 double parameter_value(const Fit& fit, const std::string& name);
 
-std::string to_string(Abscissa abscissa);
-std::string to_string(Weights weights);
+std::string to_string(Abscissa abscissa);  // center, published
+std::string to_string(Weights weights);    // none, count, stderr
+
+// The inverses. Throw InputError for any other text.
+Abscissa abscissa_from_string(const std::string& text);
+Weights weights_from_string(const std::string& text);
 
 }  // namespace hemibake
