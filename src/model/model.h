@@ -1,5 +1,6 @@
-// The fitted models, evaluated in float or double as a shader would: irradiance relative to that of an open surface
-// (E/π under a sky of radiance 1), from ambient occlusion and albedo. Formulas: curves/closed_forms.h.
+// The fitted models, evaluated in float or double as a shader would: irradiance relative to that of an open
+// surface (E/π under a sky of radiance 1), from ambient occlusion and albedo. Formulas:
+// curves/closed_forms.h.
 //
 // Every model gives, for ao = α and albedo = ρ in 0..1, ends included:
 //   direct(α)        F₀, the light that comes straight from the sky
@@ -16,7 +17,8 @@
 
 namespace hemibake {
 
-// All of 0..1: F₀, F₁ and the total, which rises with α and ρ; τ too, and below 1 for α > 0. F₀ + F₁/(1 − τ) = 1.
+// All of 0..1: F₀, F₁ and the total, which rises with α and ρ; τ too, and below 1 for α > 0. F₀ + F₁/(1 − τ)
+// = 1.
 struct BoundedModel {
   double k0 = 0;  // 0..1
   double k1 = 0;  // 0..1
@@ -48,8 +50,8 @@ struct BoundedModel {
   }
 };
 
-// The model of the notes of 2018 as it stands, eq. 7, 9, 10, 11. F₀ exceeds 1 for α above 0.949253 with the published
-// constants; from α = 0.8 on τ leaves 0..1, and the total has poles near there at every ρ below 1.
+// The model of the notes of 2018 as it stands, eq. 7, 9, 10, 11. F₀ exceeds 1 for α above 0.949253 with the
+// published constants; from α = 0.8 on τ leaves 0..1, and the total has poles near there at every ρ below 1.
 struct PublishedModel {
   double k = 0.5;
   double e = 0.75;
@@ -74,8 +76,8 @@ struct PublishedModel {
   }
 };
 
-// The same with F₀ cut off at 1 and τ at 0 and 1: within 0..1 everywhere, equal to the published model wherever that
-// one is sound. What `export` writes for published constants.
+// The same with F₀ cut off at 1 and τ at 0 and 1: within 0..1 everywhere, equal to the published model
+// wherever that one is sound. What `export` writes for published constants.
 struct GuardedModel {
   PublishedModel published;
 
@@ -104,15 +106,17 @@ struct GuardedModel {
   }
 };
 
-// Jimenez et al. 2016 (closed_forms.h, jimenez_cubic), by default with their constants. No F₁ or τ: all bounces at once.
-// visibility: E₀/π, the cosine-weighted visible fraction; with α instead it is wrong by the difference of the two.
+// Jimenez et al. 2016 (closed_forms.h, jimenez_cubic), by default with their constants. No F₁ or τ: all
+// bounces at once. visibility: E₀/π, the cosine-weighted visible fraction; with α instead it is wrong by the
+// difference of the two.
 struct JimenezModel {
   std::array<double, 6> parameters = {2.0404, -0.3324, -4.7951, 0.6417, 2.7552, 0.6903};
 
   template <class T>
   T total(T visibility, T albedo) const {
     std::array<T, 6> p;
-    std::transform(parameters.begin(), parameters.end(), p.begin(), [](double v) { return static_cast<T>(v); });
+    std::transform(parameters.begin(), parameters.end(), p.begin(),
+                   [](double v) { return static_cast<T>(v); });
     return std::max(visibility, jimenez_cubic(visibility, albedo, p.data()));
   }
 };

@@ -10,15 +10,15 @@ namespace {
 
 // What the three languages spell differently; everything else of the text is the same in all of them.
 struct Spelling {
-  std::string_view open;        // before the functions
-  std::string_view close;       // after them
-  std::string_view function;    // before each function
+  std::string_view open;             // before the functions
+  std::string_view close;            // after them
+  std::string_view function;         // before each function
   std::string_view vector_function;  // before one that takes or gives a vector
-  std::string_view vector;      // type of a colour
+  std::string_view vector;           // type of a colour
   std::string_view vector_argument;
   std::string_view vector_open, vector_close;  // around three numbers
   std::string_view number_suffix;
-  std::string_view prefix;      // of min, max, pow, exp, sqrt
+  std::string_view prefix;  // of min, max, pow, exp, sqrt
 };
 
 constexpr Spelling kGlsl{"", "", "", "", "vec3", "vec3", "vec3(", ")", "", ""};
@@ -176,12 +176,14 @@ std::string assemble(std::string_view model, const Constants& constants, Languag
 
 }  // namespace
 
-std::string shader_text(const BoundedModel& model, Language language, const std::vector<std::string>& origin) {
+std::string shader_text(const BoundedModel& model, Language language,
+                        const std::vector<std::string>& origin) {
   const Constants constants = {{"$k0", model.k0}, {"$dk", model.k1 - model.k0}, {"$n", model.n}};
   return assemble(kBounded, constants, language, origin);
 }
 
-std::string shader_text(const GuardedModel& model, Language language, const std::vector<std::string>& origin) {
+std::string shader_text(const GuardedModel& model, Language language,
+                        const std::vector<std::string>& origin) {
   const PublishedModel& p = model.published;
   const Constants constants = {{"$k", p.k}, {"$e", p.e}, {"$a", p.a}, {"$b", p.b}};
   return assemble(kGuarded, constants, language, origin);
