@@ -12,6 +12,8 @@
 namespace hemibake {
 
 // One per file in cli/.
+CommandBody setup_curves(CLI::App& app);
+CommandBody setup_fit(CLI::App& app);
 CommandBody setup_synth(CLI::App& app);
 
 namespace {
@@ -22,6 +24,8 @@ constexpr int kExitInterrupted = 130;
 
 constexpr std::array kCommands = {
     Command{"synth", "write a synthetic height map", setup_synth},
+    Command{"curves", "sort the texels of a bake by AO: mean and spread of every bounce", setup_curves},
+    Command{"fit", "fit models to curves", setup_fit},
 };
 
 int fail(int code, const std::string& message) {
