@@ -171,7 +171,11 @@ WalkEnd HeightWalk::follow(const glm::dvec3& start, const glm::dvec3& direction,
       ray.x -= tiles_x * cells_x_;
       ray.y -= tiles_y * cells_y_;
     }
-    if (clear && level < last_level) ++level;
+    // The block around this one was tried on the way down: coarser only where the ray has entered another.
+    const int shift = 2 * (level + 1);
+    const bool entered =
+        block.begin_x >> shift != cell_x >> shift || block.begin_y >> shift != cell_y >> shift;
+    if (entered && level < last_level) ++level;
   }
   return WalkEnd::kLost;
 }

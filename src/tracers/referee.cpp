@@ -17,13 +17,11 @@
 namespace hemibake {
 namespace {
 
-constexpr size_t kGroupPaths = 64;
-
 struct Path {
   SurfacePoint at;
   double weight;
 };
-using Group = std::array<Path, kGroupPaths>;
+using Group = std::array<Path, kRefereeGroupPaths>;
 
 struct RayCounts {
   uint64_t rays = 0;
@@ -49,7 +47,7 @@ void check_options(const RefereeOptions& options) {
 
 uint32_t group_count(const RefereeOptions& options) {
   const auto paths = static_cast<uint32_t>(options.paths);
-  return std::max(2u, (paths + static_cast<uint32_t>(kGroupPaths) - 1) / static_cast<uint32_t>(kGroupPaths));
+  return std::max(2u, (paths + kRefereeGroupPaths - 1) / kRefereeGroupPaths);
 }
 
 bool reaches(const RefereeTotal& total, int bounce) {
@@ -107,10 +105,10 @@ class Referee {
   static void resample(std::span<const Path> survivors, RefereeRandom& random, Group& group) {
     double sum = 0;
     for (const Path& path : survivors) sum += path.weight;
-    const double share = sum / kGroupPaths, offset = random.uniform();
+    const double share = sum / kRefereeGroupPaths, offset = random.uniform();
     size_t source = 0;
     double passed = survivors[0].weight;  // weight of the survivors up to `source`
-    for (size_t i = 0; i < kGroupPaths; ++i) {
+    for (size_t i = 0; i < kRefereeGroupPaths; ++i) {
       const double mark = (static_cast<double>(i) + offset) * share;
       while (passed < mark && source + 1 < survivors.size()) passed += survivors[++source].weight;
       group[i] = {survivors[source].at, share};
@@ -155,7 +153,7 @@ template <class Start>
 void run_group(const Referee& referee, RefereeRandom random, const Start& start, std::span<double> out,
                RayCounts& counts) {
   Group group;
-  for (Path& path : group) path = {start(random), 1.0 / kGroupPaths};
+  for (Path& path : group) path = {start(random), 1.0 / kRefereeGroupPaths};
   referee.measure_group(group, random, out, counts);
 }
 

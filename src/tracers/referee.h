@@ -34,6 +34,9 @@
 
 namespace hemibake {
 
+// Paths that are split together.
+inline constexpr uint32_t kRefereeGroupPaths = 64;
+
 // Σ_b ρᵇ E_b/π over b = 0 … last_bounce.
 struct RefereeTotal {
   static constexpr int kUnlimited = -1;
@@ -59,6 +62,7 @@ struct RefereeEstimates {
   uint64_t lost_rays =
       0;  // taken for sky, see WalkEnd::kLost: every estimate is off by at most lost paths / paths
 
+  uint64_t paths() const { return uint64_t{groups} * kRefereeGroupPaths; }  // per receiver
   size_t receivers() const { return quantities == 0 ? 0 : mean.size() / static_cast<size_t>(quantities); }
   size_t index(size_t receiver, int quantity) const {
     return receiver * static_cast<size_t>(quantities) + static_cast<size_t>(quantity);

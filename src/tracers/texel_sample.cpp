@@ -64,7 +64,7 @@ RefereeInterval mean_from_sample(const TexelSample& sample, std::span<const doub
     const auto count = static_cast<double>(stratum.count);
     const double taken = count / static_cast<double>(stratum.population);
     mean += share * between.mean;
-    // Cochran (10.15): v = (1 − f) s²/n + f · mean of the measurements' variances / n, per stratum.
+    // Two stages (Cochran, chapter 10): v = (1 − f) s²/n + f · mean of the measurements' variances / n.
     const double spread = stratum.count > 1 ? between.sum_squared_deviations / (count - 1) : 0;
     const double part = share * share * ((1 - taken) * spread + taken * within / count) / count;
     variance += part;

@@ -1,5 +1,5 @@
 // A random sample of texels and the mean of all of them estimated from it. Source: Cochran, "Sampling
-// Techniques", 3rd ed. 1977, chapters 5 (strata) and 10 (values that are themselves measured).
+// Techniques", 3rd ed. 1977, chapters 5 (strata) and 10 (two stages: texels, and paths within a texel).
 #pragma once
 
 #include <cstddef>
