@@ -121,8 +121,10 @@ bool HeightWalk::hits_cell(const Ray& ray, int cell_x, int cell_y, double enter,
 WalkEnd HeightWalk::follow(const glm::dvec3& start, const glm::dvec3& direction, SurfacePoint& hit) const {
   const double texel = surface_.texel_size_m;
   Ray ray{start.x, start.y, start.z * texel, direction.x, direction.y, direction.z * texel, 0, 0};
-  ray.inverse_dx = ray.dx == 0 ? HUGE_VAL : 1 / ray.dx;
-  ray.inverse_dy = ray.dy == 0 ? HUGE_VAL : 1 / ray.dy;
+  // Finite, so that on the very edge of a block (0 texels to go) the product is 0.
+  constexpr double kNever = 1e300;
+  ray.inverse_dx = ray.dx == 0 ? kNever : 1 / ray.dx;
+  ray.inverse_dy = ray.dy == 0 ? kNever : 1 / ray.dy;
   const bool rises = ray.dz_m >= 0;
   if (rises && ray.z_m >= range_m_) return WalkEnd::kSky;
 

@@ -17,7 +17,7 @@
 namespace hemibake {
 namespace {
 
-constexpr double kLiftTexels = 1e-3;
+constexpr double kLiftTexels = 1e-6;  // as RefereeOptions
 
 void check_lighting(const Surface& surface, const RefereeLighting& lighting, int paths) {
   const Grid<glm::vec3>& albedo = lighting.albedo;

@@ -29,10 +29,11 @@ struct RefereeCheckOptions {
   uint64_t seed = 0;
 };
 
-// kUndecided: the interval reaches over the tolerance on either side; more paths or texels will tell.
+// kWithin: |bias| + half_width ≤ tolerance. kOutside: |bias| − half_width > tolerance. kUndecided: neither; more paths
+// or texels will tell.
 enum class RefereeVerdict { kWithin, kOutside, kUndecided };
 
-// Everything over π. In words: |bias| is below `tolerance` if it is in bias ± half_width.
+// One quantity, over the map or one AO bin. Everything over π.
 struct RefereeRow {
   std::string quantity;  // "E0", "E1", …, "total at albedo 0.5", "E0 to E20"
   double ao_low = 0, ao_high = 1;
