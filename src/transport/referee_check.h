@@ -29,8 +29,8 @@ struct RefereeCheckOptions {
   uint64_t seed = 0;
 };
 
-// kWithin: |bias| + half_width ≤ tolerance. kOutside: |bias| − half_width > tolerance. kUndecided: neither; more paths
-// or texels will tell.
+// kWithin: |bias| + half_width ≤ tolerance. kOutside: |bias| − half_width > tolerance. kUndecided: neither;
+// more paths or texels will tell.
 enum class RefereeVerdict { kWithin, kOutside, kUndecided };
 
 // One quantity, over the map or one AO bin. Everything over π.
