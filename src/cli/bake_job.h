@@ -7,8 +7,8 @@
 #include <string>
 
 #include "cli/bake_options.h"
+#include "cli/bake_surface.h"
 #include "io/provenance.h"
-#include "surface/surface.h"
 #include "tracers/tracer.h"
 #include "transport/bake.h"
 #include "transport/energy.h"
@@ -16,10 +16,10 @@
 
 namespace hemibake {
 
-// The map, read and made ready. `tracer` refers to `surface`: a job stays where it is.
+// The map, read and made ready. `tracer` refers to `map`: a job stays where it is.
 struct BakeJob {
   BakeOptions options;
-  Surface surface;
+  BakeMap map;
   std::unique_ptr<Tracer> tracer;
   BakePlan plan;
 

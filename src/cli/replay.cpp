@@ -9,7 +9,7 @@
 namespace hemibake {
 
 Replay replay_texel(const BakeJob& job, int x, int y) {
-  const Surface& surface = job.surface;
+  const Surface& surface = job.map.surface;
   if (x < 0 || y < 0 || x >= surface.width() || y >= surface.height())
     throw InputError(fmt::format("{}: there is no texel {},{}, expected 0,0 to {},{}", job.options.map.string(), x, y,
                                  surface.width() - 1, surface.height() - 1));

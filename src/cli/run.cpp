@@ -61,8 +61,9 @@ std::string describe_fits(const FitFile& file) {
   return text;
 }
 
-int run_all(const RunOptions& options) {
+int run_all(const CLI::App& app, RunOptions& options) {
   apply_common_options(options.common);
+  settle_bake_options(app, options.bake);
   if (!options.bake.wants("ao") || !options.bake.wants("irradiance"))
     throw InputError("--outputs: curves need ao and irradiance, expected both among them");
   if (!options.bake.links.empty()) check_output_path(options.bake.links, {".h5", ".hdf5"});
@@ -106,7 +107,7 @@ CommandBody setup_run(CLI::App& app) {
   app.add_option("--bins", options->bins, "bins of the curves on the AO axis")
       ->check(CLI::Range(1, 65536))->capture_default_str()->group("Output");
   add_common_options(app, options->common);
-  return [options] { return run_all(*options); };
+  return [&app, options] { return run_all(app, *options); };
 }
 
 }  // namespace hemibake
