@@ -1,0 +1,49 @@
+// Hashes and tileable noise for synthetic maps. Everything starts from integer hashes, so that a seed gives
+// the same map on every machine and at any thread count.
+#pragma once
+
+#include <cstdint>
+
+namespace hemibake {
+
+// A rectangle that repeats for ever, in units of its longer side.
+struct Tile {
+  double width = 1;   // in (0, 1]
+  double height = 1;  // in (0, 1]
+};
+
+// Cells along one side of a tile: about `frequency` per unit, at least 1.
+int cells_along(double side, double frequency);
+
+// 64 well-mixed bits from a seed and two integers (finaliser of SplitMix64; Steele, Lea & Flood 2014).
+uint64_t hash_bits(uint64_t seed, int64_t x, int64_t y);
+
+// A number in [0, 1) from 64 hashed bits, or from a seed and two integers.
+double unit_from_bits(uint64_t bits);
+double hash_unit(uint64_t seed, int64_t x, int64_t y);
+
+// 0 below `low`, 1 above `high`, the cubic 3t² − 2t³ in between. low < high.
+double smooth_step(double low, double high, double value);
+
+// Gradient noise (Perlin 2002, quintic fade; gradients uniform in the square [−1, 1]²), about 0, within ±1.
+// (x, y): any point, in units of the tile's longer side. frequency: lattice cells per unit, rounded so that a
+// whole number fits the tile.
+double tile_noise(double x, double y, Tile tile, double frequency, uint64_t seed);
+
+// Octaves of gradient noise, one per doubling of the frequency.
+struct FractalNoise {
+  double frequency = 4;            // of the first octave, cells per unit
+  double highest_frequency = 256;  // octaves above this one are left out; at least the first is kept
+  double gain = 0.5;               // amplitude of an octave over that of the one before, in (0, 1)
+  uint64_t seed = 0;
+};
+double fractal_noise(double x, double y, Tile tile, const FractalNoise& noise);
+
+// The nearest of a scattering of round spots, one in every cell of the tile.
+struct Spot {
+  double distance;  // from (x, y) to the centre, units of the longer side
+  uint64_t bits;    // hashed bits that belong to the spot: its size, depth, whatever the caller makes of them
+};
+Spot nearest_spot(double x, double y, Tile tile, double frequency, uint64_t seed);
+
+}  // namespace hemibake

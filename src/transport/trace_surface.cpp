@@ -1,0 +1,90 @@
+#include "transport/trace_surface.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <stdexcept>
+
+#include "core/parallel.h"
+#include "core/progress.h"
+
+namespace hemibake {
+namespace {
+
+// Traces rows [0, row_count) block by block; store(index, row) keeps what the caller wants of each.
+template <class TraceRow, class Store>
+TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, const TraceRow& trace_row,
+                          const Store& store) {
+  const size_t block_count = (row_count + Links::kRowsPerBlock - 1) / Links::kRowsPerBlock;
+  std::vector<TracerCounts> counts(block_count);
+  parallel_for(block_count, 1, [&](size_t first_block, size_t last_block) {
+    Row row;
+    for (size_t b = first_block; b < last_block; ++b) {
+      const uint32_t begin = static_cast<uint32_t>(b) * Links::kRowsPerBlock;
+      const uint32_t end = std::min(row_count, begin + Links::kRowsPerBlock);
+      for (uint32_t index = begin; index < end; ++index) {
+        trace_row(index, row, counts[b]);
+        // Up to 2: the march with published weights in a narrow cone.
+        if (!(row.direct_over_pi >= 0 && row.direct_over_pi <= 2))
+          throw std::logic_error(fmt::format("row {}: E0/pi is {}, expected 0..2", index, row.direct_over_pi));
+        store(index, row);
+        if (links != nullptr) append_row(links->blocks[b], row.links);
+      }
+      if (links != nullptr) {
+        links->blocks[b].patches.shrink_to_fit();
+        links->blocks[b].weights.shrink_to_fit();
+      }
+      progress.advance(counts[b].rays);
+    }
+  });
+  TracerCounts total;
+  for (const TracerCounts& c : counts) {
+    total.rays += c.rays;
+    total.cut_short += c.cut_short;
+  }
+  return total;
+}
+
+}  // namespace
+
+Visibility trace_surface(const Tracer& tracer, int width, int height, Patches patches, bool with_links) {
+  Visibility seen;
+  seen.visible_fraction = Grid<float>(width, height);
+  seen.direct_over_pi = Grid<float>(width, height);
+  seen.bent_normals = Grid<glm::vec3>(width, height);
+  const uint32_t texels = static_cast<uint32_t>(seen.visible_fraction.size());
+  const bool trace_patches = with_links && patches == Patches::kFacets;
+
+  // One row tells how many rays a receiver takes.
+  Row first_row;
+  TracerCounts first_counts;
+  tracer.trace_texel(0, false, first_row, first_counts);
+  const uint64_t receivers = texels + uint64_t{trace_patches ? tracer.patch_count() : 0};
+  Progress progress("tracing", receivers * first_counts.rays, "ray");
+
+  if (with_links) seen.gather = make_links(texels, tracer.patch_count());
+  seen.counts = trace_blocks(
+      texels, with_links ? &seen.gather : nullptr, progress,
+      [&](uint32_t texel, Row& row, TracerCounts& counts) { tracer.trace_texel(texel, with_links, row, counts); },
+      [&](uint32_t texel, const Row& row) {
+        seen.visible_fraction[texel] = static_cast<float>(row.visible_fraction);
+        seen.direct_over_pi[texel] = static_cast<float>(row.direct_over_pi);
+        seen.bent_normals[texel] = glm::vec3(row.bent_normal);
+      });
+  if (!trace_patches) return seen;
+
+  seen.patches = make_links(tracer.patch_count(), tracer.patch_count());
+  seen.patch_direct_over_pi.resize(tracer.patch_count());
+  const TracerCounts of_patches = trace_blocks(
+      tracer.patch_count(), &seen.patches, progress,
+      [&](uint32_t patch, Row& row, TracerCounts& counts) { tracer.trace_patch(patch, true, row, counts); },
+      [&](uint32_t patch, const Row& row) {
+        seen.patch_direct_over_pi[patch] = static_cast<float>(row.direct_over_pi);
+      });
+  seen.counts.rays += of_patches.rays;
+  seen.counts.cut_short += of_patches.cut_short;
+  return seen;
+}
+
+}  // namespace hemibake
