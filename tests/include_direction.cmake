@@ -8,7 +8,7 @@ set(forbidden_pairs "estimators>tracers" "estimators>transport" "model>fitting")
 
 # Header prefix and the folders that may include it; GLM goes everywhere.
 set(third_party
-  "embree3/:tracers" "OpenImageIO/:io" "OpenEXR/:io" "Imath/:io" "hdf5:io" "openssl/:io" "png:io" "zlib:io"
+  "embree3/:tracers" "OpenImageIO/:io" "OpenEXR/:io" "Imath/:io" "hdf5:io" "openssl/:io" "png:io" "zlib.h:io"
   "ceres/:fitting" "Eigen/:fitting" "tbb/:core" "CLI/:cli" "hwy/:tracers")
 
 set(errors "")
