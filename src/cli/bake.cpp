@@ -55,9 +55,15 @@ int run_bake(const CLI::App& app, BakeCommandOptions& options) {
 CommandBody setup_bake(CLI::App& app) {
   auto options = std::make_shared<BakeCommandOptions>();
   add_bake_options(app, options->bake);
-  app.add_option("-o,--output", options->output, "the bake to write, EXR")->option_text("BAKE.exr")->group("Output");
-  app.add_option("--texel", options->texel, "print the rays, hits and links of one texel instead, counted from 0")
-      ->delimiter(',')->expected(2)->option_text("X,Y")->group("Output");
+  app.add_option("-o,--output", options->output, "the bake to write, EXR")
+      ->option_text("BAKE.exr")
+      ->group("Output");
+  app.add_option("--texel", options->texel,
+                 "print the rays, hits and links of one texel instead, counted from 0")
+      ->delimiter(',')
+      ->expected(2)
+      ->option_text("X,Y")
+      ->group("Output");
   app.add_flag("--dry-run", options->dry_run, "say memory and work, bake nothing")->group("Output");
   add_common_options(app, options->common);
   return [&app, options] { return run_bake(app, *options); };

@@ -24,7 +24,7 @@ struct BakeOptions {
   double size_m = 1;
   double amplitude_m = 0.1;
   std::filesystem::path normal_map;
-  std::string normal_y;               // "up", "down"; required with a normal map
+  std::string normal_y;                  // "up", "down"; required with a normal map
   std::string normals_from = "heights";  // "heights", "faces"
   std::string edge = "wrap";
   std::string tracer = "embree";
@@ -60,8 +60,9 @@ struct BakeOptions {
 // Declares them on `app`: one definition per option.
 void add_bake_options(CLI::App& app, BakeOptions& options);
 
-// Fills in what follows from other options: the preset (where its options were not given on the command line of `app`)
-// and the tracer's patches. Then what no single option can know: throws InputError for combinations that make no sense.
+// Fills in what follows from other options: the preset (where its options were not given on the command line
+// of `app`) and the tracer's patches. Then what no single option can know: throws InputError for combinations
+// that make no sense.
 void settle_bake_options(const CLI::App& app, BakeOptions& options);
 
 RayOptions ray_options(const BakeOptions& options);

@@ -58,7 +58,8 @@ int run_guarded(const CommandBody& body) {
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
-  CLI::App app{"hemibake " HEMIBAKE_VERSION ": bakes the light on a height map and fits models of it for shaders."};
+  CLI::App app{"hemibake " HEMIBAKE_VERSION
+               ": bakes the light on a height map and fits models of it for shaders."};
   app.set_version_flag("--version", HEMIBAKE_VERSION);
   app.require_subcommand(1);
   CommandBody chosen;

@@ -35,15 +35,16 @@ void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directory(folder, error);
   if (error || !std::filesystem::is_directory(folder))
-    throw InputError(fmt::format("{}: could not make the folder: {}, expected a folder or a new name in one", folder.string(),
-                                 error ? error.message() : "a file of that name is there"));
+    throw InputError(fmt::format("{}: could not make the folder: {}, expected a folder or a new name in one",
+                                 folder.string(), error ? error.message() : "a file of that name is there"));
 }
 
 FitFile fit_all(const Curves& curves, const Provenance& provenance) {
   FitFile file;
   file.provenance = provenance;
   for (const char* model : {"published", "bounded"})
-    for (NamedFit& named : fit_model(model, curves, Abscissa::center, Weights::none)) file.fits.push_back(std::move(named));
+    for (NamedFit& named : fit_model(model, curves, Abscissa::center, Weights::none))
+      file.fits.push_back(std::move(named));
   return file;
 }
 
@@ -68,7 +69,8 @@ int run_all(const CLI::App& app, RunOptions& options) {
     throw InputError("--outputs: curves need ao and irradiance, expected both among them");
   if (!options.bake.links.empty()) check_output_path(options.bake.links, {".h5", ".hdf5"});
   make_folder(options.folder);
-  for (const char* name : {"bake.exr", "curves.csv", "fit.json", "check.json"}) check_output_path(options.folder / name);
+  for (const char* name : {"bake.exr", "curves.csv", "fit.json", "check.json"})
+    check_output_path(options.folder / name);
 
   BakeJob job;
   prepare_bake(options.bake, false, job);
@@ -93,7 +95,8 @@ int run_all(const CLI::App& app, RunOptions& options) {
   json["fits"] = json_from_fits(fits);
   json["fits"].erase("provenance");
   json["check"] = json_from_checks(checks);
-  print_result(options.common, json, describe_bake(job, result) + describe_fits(fits) + table_from_checks(checks));
+  print_result(options.common, json,
+               describe_bake(job, result) + describe_fits(fits) + table_from_checks(checks));
   return all_passed(checks) ? 0 : 1;
 }
 
@@ -102,10 +105,15 @@ int run_all(const CLI::App& app, RunOptions& options) {
 CommandBody setup_run(CLI::App& app) {
   auto options = std::make_shared<RunOptions>();
   add_bake_options(app, options->bake);
-  app.add_option("-o,--output", options->folder, "folder for bake.exr, curves.csv, fit.json and check.json; made if new")
-      ->required()->option_text("DIR")->group("Output");
+  app.add_option("-o,--output", options->folder,
+                 "folder for bake.exr, curves.csv, fit.json and check.json; made if new")
+      ->required()
+      ->option_text("DIR")
+      ->group("Output");
   app.add_option("--bins", options->bins, "bins of the curves on the AO axis")
-      ->check(CLI::Range(1, 65536))->capture_default_str()->group("Output");
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str()
+      ->group("Output");
   add_common_options(app, options->common);
   return [&app, options] { return run_all(app, *options); };
 }

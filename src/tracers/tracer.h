@@ -1,7 +1,8 @@
-// What a tracer answers: how much sky a receiver sees, how much light that is, and which patches block the rest.
+// What a tracer answers: how much sky a receiver sees, how much light that is, and which patches block the
+// rest.
 //
-// Receivers are texels (with their shading normals) and patches; patches are what light is re-emitted by: facets of
-// the surface (surface/facets.h), or the texels themselves, with the same index as the texel.
+// Receivers are texels (with their shading normals) and patches; patches are what light is re-emitted by:
+// facets of the surface (surface/facets.h), or the texels themselves, with the same index as the texel.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,8 @@ struct Link {
   float weight;
 };
 
-// What one receiver sees. Σ weights + direct_over_pi = 1 to rounding (with the march's published weights up to 2,
-// see tracers/march.h).
+// What one receiver sees. Σ weights + direct_over_pi = 1 to rounding (with the march's published weights up
+// to 2, see tracers/march.h).
 struct Row {
   double visible_fraction = 0;  // α, uniform fraction of the hemisphere about the normal that is sky, 0..1
   double direct_over_pi = 0;    // E₀/π, cosine-weighted fraction, 0..1
@@ -34,15 +35,16 @@ struct RayRecord {
   double cosine_weight;   // share of E₀/π, or of the links
   double uniform_weight;  // share of α
   bool hit;
-  uint32_t facet;           // where hit
-  glm::dvec2 hit_texel;     // where hit: position in texels, texel centres at integers, wrapped into the map
-  double distance_m;        // where hit: along the ray
-  int tiles_crossed;        // map copies entered after the first
+  uint32_t facet;        // where hit
+  glm::dvec2 hit_texel;  // where hit: position in texels, texel centres at integers, wrapped into the map
+  double distance_m;     // where hit: along the ray
+  int tiles_crossed;     // map copies entered after the first
 };
 
 struct TracerCounts {
-  uint64_t rays = 0;       // rays (or azimuths) traced
-  uint64_t cut_short = 0;  // rays still below the highest texel where the tracer stops following them, taken for sky
+  uint64_t rays = 0;  // rays (or azimuths) traced
+  uint64_t cut_short =
+      0;  // rays still below the highest texel where the tracer stops following them, taken for sky
 };
 
 // A surface made ready for tracing. Safe to call from many threads; the answer depends on the receiver only.

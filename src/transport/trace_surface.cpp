@@ -27,7 +27,8 @@ TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, 
         trace_row(index, row, counts[b]);
         // Up to 2: the march with published weights in a narrow cone.
         if (!(row.direct_over_pi >= 0 && row.direct_over_pi <= 2))
-          throw std::logic_error(fmt::format("row {}: E0/pi is {}, expected 0..2", index, row.direct_over_pi));
+          throw std::logic_error(
+              fmt::format("row {}: E0/pi is {}, expected 0..2", index, row.direct_over_pi));
         store(index, row);
         if (links != nullptr) append_row(links->blocks[b], row.links);
       }
@@ -66,7 +67,9 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
   if (with_links) seen.gather = make_links(texels, tracer.patch_count());
   seen.counts = trace_blocks(
       texels, with_links ? &seen.gather : nullptr, progress,
-      [&](uint32_t texel, Row& row, TracerCounts& counts) { tracer.trace_texel(texel, with_links, row, counts); },
+      [&](uint32_t texel, Row& row, TracerCounts& counts) {
+        tracer.trace_texel(texel, with_links, row, counts);
+      },
       [&](uint32_t texel, const Row& row) {
         seen.visible_fraction[texel] = static_cast<float>(row.visible_fraction);
         seen.direct_over_pi[texel] = static_cast<float>(row.direct_over_pi);
