@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "surface/surface.h"
@@ -22,7 +24,7 @@ struct BakeOptions {
   double size_m = 1;
   double amplitude_m = 0.1;
   std::filesystem::path normal_map;
-  std::string normal_y;               // "up", "down"; required with a normal map
+  std::string normal_y;                  // "up", "down"; required with a normal map
   std::string normals_from = "heights";  // "heights", "faces"
   std::string edge = "wrap";
   std::string tracer = "embree";
@@ -49,6 +51,11 @@ void add_bake_options(CLI::App& app, BakeOptions& options);
 
 // What no single option can know: throws InputError for combinations that make no sense.
 void check_bake_options(const BakeOptions& options);
+
+// Fails before the work where `output` cannot be written, or is what the bake reads. suffixes: see
+// io/output_file.h.
+void check_bake_output(const BakeOptions& options, const std::filesystem::path& output,
+                       std::initializer_list<std::string_view> suffixes = {});
 
 RayOptions ray_options(const BakeOptions& options);
 Edge edge_of(const BakeOptions& options);

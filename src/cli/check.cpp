@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "cli/file_checks.h"
+#include "cli/validators.h"
 
 namespace hemibake {
 namespace {
@@ -30,8 +31,9 @@ CommandBody setup_check(CLI::App& app) {
   auto options = std::make_shared<CheckOptions>();
   app.add_option("FILE", options->file, "a bake (.exr), curves (.csv) or fits (.json)")->required();
   app.add_option("--tolerance", options->tolerance,
-                 "largest |energy sum / pi - 1| that passes; default: 2e-5, and what the bake says is still under way may be missing")
-      ->check(CLI::Range(1e-12, 1.0));
+                 "largest |energy sum / pi - 1| that passes; default: 2e-5, and what the bake says is still "
+                 "under way may be missing")
+      ->check(number_in(1e-12, 1));
   add_common_options(app, options->common);
   return [options] { return run_check(*options); };
 }
