@@ -34,7 +34,7 @@ void refuse_beyond_memory(const BakeJob& job, const BakePlan& plan) {
   const double allowed =
       job.options.memory_gib ? *job.options.memory_gib * kGib : static_cast<double>(machine_memory_bytes());
   if (static_cast<double>(plan.memory_bytes()) <= allowed) return;
-  throw InputError(fmt::format("{}: the bake needs {:.2f} GiB, expected at most the {:.2f} GiB of {}",
+  throw InputError(fmt::format("{}: the bake needs {:.3g} GiB, expected at most the {:.3g} GiB of {}",
                                job.options.map.string(), static_cast<double>(plan.memory_bytes()) / kGib,
                                allowed / kGib, job.options.memory_gib ? "--memory" : "this machine"));
 }

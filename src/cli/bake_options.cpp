@@ -4,9 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
+#include "cli/validators.h"
 #include "core/error.h"
+#include "io/output_file.h"
 
 namespace hemibake {
 namespace {
@@ -16,28 +18,6 @@ constexpr int kMaxStoredBounces = 1000;
 constexpr int kMaxBounces = 1000000;
 constexpr int kMaxSteps = 10000000;
 constexpr double kLargestLengthM = 1e9;
-
-// CLI11's ranges let NaN through: every comparison with it is false.
-CLI::Validator number_in(double low, double high) {
-  return CLI::Validator(
-      [low, high](std::string& text) {
-        double value = 0;
-        if (!CLI::detail::lexical_cast(text, value) || !(value >= low && value <= high))
-          return fmt::format("{}, expected a number from {} to {}", text, low, high);
-        return std::string();
-      },
-      fmt::format("in [{} - {}]", low, high));
-}
-
-// A number above 0, which a closed range cannot say.
-CLI::Validator positive_to(double high) {
-  return number_in(std::nextafter(0.0, 1.0), high).description(fmt::format("in (0 - {}]", high));
-}
-
-// CLI11 takes −1 for 2⁶⁴ − 1.
-std::string refuse_sign(const std::string& text) {
-  return text.starts_with('-') ? text + ", expected a whole number of 0 or more" : "";
-}
 
 }  // namespace
 
@@ -88,7 +68,7 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->capture_default_str()
       ->group("Tracing");
   app.add_option("--rays", options.rays, "rays per texel and per patch")
-      ->check(CLI::Range(1, kMaxRays))
+      ->check(whole_number_in(1, kMaxRays))
       ->capture_default_str()
       ->group("Tracing");
   app.add_option("--cone", options.cone_degrees,
@@ -106,7 +86,7 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->check(positive_to(1e30))
       ->group("Tracing");
   app.add_option("--seed", options.seed, "another number, other random rotations")
-      ->check(refuse_sign)
+      ->check(whole_number_in(0, std::numeric_limits<uint64_t>::max()))
       ->capture_default_str()
       ->group("Tracing");
 
@@ -118,7 +98,7 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->group("March");
   app.add_option("--max-steps", options.max_steps,
                  "steps of a texel after which a march is sky [published: 200]")
-      ->check(CLI::Range(1, kMaxSteps))
+      ->check(whole_number_in(1, kMaxSteps))
       ->capture_default_str()
       ->group("March");
   app.add_option("--lift", options.lift_percent,
@@ -172,7 +152,7 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->capture_default_str()
       ->group("Light");
   app.add_option("--bounces", options.bounces, "bounces stored one by one")
-      ->check(CLI::Range(0, kMaxStoredBounces))
+      ->check(whole_number_in(0, kMaxStoredBounces))
       ->capture_default_str()
       ->group("Light");
   app.add_option(
@@ -181,7 +161,7 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->check(number_in(1e-12, 1))
       ->group("Light");
   app.add_option("--max-bounces", options.max_bounces, "where --converge gives up")
-      ->check(CLI::Range(1, kMaxBounces))
+      ->check(whole_number_in(1, kMaxBounces))
       ->capture_default_str()
       ->group("Light");
 
@@ -245,6 +225,16 @@ void settle_bake_options(const CLI::App& app, BakeOptions& options) {
     throw InputError("--normal-length: stored lengths need --normals and --tracer march, expected both");
   if (options.converge && !options.wants("irradiance"))
     throw InputError("--converge: irradiance is not among --outputs, expected it there");
+}
+
+void check_bake_output(const BakeOptions& options, const std::filesystem::path& output,
+                       std::initializer_list<std::string_view> suffixes) {
+  check_output_path(output, suffixes);
+  for (const std::filesystem::path& input : {options.map, options.normal_map}) {
+    std::error_code not_there;
+    if (std::filesystem::equivalent(output, input, not_there))
+      throw InputError(output.string() + ": is the input itself, expected another name for the output");
+  }
 }
 
 RayOptions ray_options(const BakeOptions& options) {

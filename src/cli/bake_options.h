@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "surface/filter.h"
@@ -64,6 +66,11 @@ void add_bake_options(CLI::App& app, BakeOptions& options);
 // of `app`) and the tracer's patches. Then what no single option can know: throws InputError for combinations
 // that make no sense.
 void settle_bake_options(const CLI::App& app, BakeOptions& options);
+
+// Fails before the work where `output` cannot be written, or is what the bake reads. suffixes: see
+// io/output_file.h.
+void check_bake_output(const BakeOptions& options, const std::filesystem::path& output,
+                       std::initializer_list<std::string_view> suffixes = {});
 
 RayOptions ray_options(const BakeOptions& options);
 FilterOptions filter_options(const BakeOptions& options);

@@ -10,6 +10,7 @@
 #include "cli/file_checks.h"
 #include "cli/name_file.h"
 #include "cli/referee_report.h"
+#include "cli/validators.h"
 #include "core/error.h"
 #include "io/output_file.h"
 
@@ -61,7 +62,7 @@ CommandBody setup_check(CLI::App& app) {
   app.add_option("--tolerance", options->tolerance,
                  "largest |energy sum / pi - 1| that passes; default: 2e-5, and what the bake says is still "
                  "under way may be missing")
-      ->check(CLI::Range(1e-12, 1.0));
+      ->check(number_in(1e-12, 1));
   constexpr const char* kReferee = "Referee";
   RefereeCheckOptions& judge = options->judge;
   app.add_flag("--referee", options->referee,
@@ -69,23 +70,23 @@ CommandBody setup_check(CLI::App& app) {
                "where it was, or beside the bake")
       ->group(kReferee);
   app.add_option("--texels", judge.texels, "texels measured again")
-      ->check(CLI::Range(2, 1 << 28))
+      ->check(whole_number_in(2, 1 << 28))
       ->capture_default_str()
       ->group(kReferee);
   app.add_option("--paths", judge.paths, "paths per texel")
-      ->check(CLI::Range(1, 1 << 24))
+      ->check(whole_number_in(1, 1 << 24))
       ->capture_default_str()
       ->group(kReferee);
   app.add_option("--confidence", judge.confidence, "of every interval")
-      ->check(CLI::Range(0.5, 0.999999))
+      ->check(number_in(0.5, 0.999999))
       ->capture_default_str()
       ->group(kReferee);
   app.add_option("--mean-tolerance", judge.mean_tolerance, "of the means, relative")
-      ->check(CLI::Range(1e-6, 1.0))
+      ->check(number_in(1e-6, 1))
       ->capture_default_str()
       ->group(kReferee);
   app.add_option("--bin-tolerance", judge.bin_tolerance, "of the means in an AO bin, relative")
-      ->check(CLI::Range(1e-6, 1.0))
+      ->check(number_in(1e-6, 1))
       ->capture_default_str()
       ->group(kReferee);
   add_common_options(app, options->common);

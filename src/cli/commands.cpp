@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <new>
@@ -34,7 +35,10 @@ constexpr std::array kCommands = {
     Command{"run", "bake, curves, fit and check in one go", setup_run},
 };
 
-int fail(int code, const std::string& message) {
+// One line, whatever a file name or a library puts into it.
+int fail(int code, std::string message) {
+  std::ranges::replace_if(
+      message, [](unsigned char c) { return c < ' '; }, ' ');
   fmt::print(stderr, "hemibake: {}\n", message);
   return code;
 }
@@ -47,7 +51,7 @@ int run_guarded(const CommandBody& body) {
   } catch (const CheckError& error) {
     return fail(kExitFailedCheck, error.what());
   } catch (const Interrupted&) {
-    return fail(kExitInterrupted, "interrupted, nothing was written");
+    return fail(kExitInterrupted, "interrupted, no file was left half written");
   } catch (const std::bad_alloc&) {
     return fail(kExitBadInput, "out of memory, expected less work (see --dry-run and --memory)");
   } catch (const std::exception& error) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "cli/name_file.h"
 #include "core/error.h"
 #include "curves/check_curves.h"
 #include "io/curves_file.h"
@@ -22,7 +23,12 @@ constexpr double kDefaultTolerance = 2e-5;
 template <class Value>
 std::optional<Value> entry(const Provenance& provenance, const char* name) {
   if (!provenance.is_object() || !provenance.contains(name)) return std::nullopt;
-  return provenance[name].get<Value>();
+  try {
+    return provenance[name].get<Value>();
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(fmt::format("attribute hemibake:{} is {}, expected what 'hemibake bake' writes there",
+                                 name, provenance[name].dump()));
+  }
 }
 
 // α² ≤ E₀/π ≤ α(2−α) holds exactly for rays of equal solid angle, whose cosines are the midpoint rule; other
@@ -81,7 +87,13 @@ Checks checks_of_bake(const BakeFile& file, std::optional<double> tolerance) {
 
 Checks checks_of_file(const std::filesystem::path& path, std::optional<double> tolerance) {
   const std::string extension = lower_case_extension(path);
-  if (extension == ".exr") return checks_of_bake(read_bake(path), tolerance);
+  if (extension == ".exr") {
+    const BakeFile file = read_bake(path);
+    const Checks checks = name_file(path, [&] { return checks_of_bake(file, tolerance); });
+    if (checks.empty())
+      throw InputError(path.string() + ": holds no irradiance, expected some: nothing else is checked");
+    return checks;
+  }
   if (extension == ".csv")
     return check_curves(read_curves(path), tolerance.value_or(kDefaultTolerance), tolerance.has_value());
   if (extension == ".json") return checks_of_fit(read_fits(path), tolerance.value_or(kDefaultTolerance));
