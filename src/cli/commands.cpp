@@ -13,6 +13,7 @@ namespace hemibake {
 
 // One per file in cli/.
 CommandBody setup_curves(CLI::App& app);
+CommandBody setup_export(CLI::App& app);
 CommandBody setup_fit(CLI::App& app);
 CommandBody setup_synth(CLI::App& app);
 
@@ -26,6 +27,7 @@ constexpr std::array kCommands = {
     Command{"synth", "write a synthetic height map", setup_synth},
     Command{"curves", "sort the texels of a bake by AO: mean and spread of every bounce", setup_curves},
     Command{"fit", "fit models to curves", setup_fit},
+    Command{"export", "write a fitted model as shader source or a table", setup_export},
 };
 
 int fail(int code, const std::string& message) {

@@ -26,7 +26,7 @@ struct Formula {
   std::string model;  // as in FIT.json
   std::string text;   // the formula for a human
   std::vector<ParameterRange> parameters;
-  std::vector<std::vector<double>> starts;  // parameter sets to begin from; the one of least cost is taken
+  std::vector<std::vector<double>> starts;  // parameter sets to begin from; those of least cost are taken
   int points_per_observation = 1;           // points that share one error (fit.h, "observation")
 };
 
