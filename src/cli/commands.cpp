@@ -12,6 +12,7 @@
 namespace hemibake {
 
 // One per file in cli/.
+CommandBody setup_compare(CLI::App& app);
 CommandBody setup_curves(CLI::App& app);
 CommandBody setup_export(CLI::App& app);
 CommandBody setup_fit(CLI::App& app);
@@ -27,6 +28,7 @@ constexpr std::array kCommands = {
     Command{"synth", "write a synthetic height map", setup_synth},
     Command{"curves", "sort the texels of a bake by AO: mean and spread of every bounce", setup_curves},
     Command{"fit", "fit models to curves", setup_fit},
+    Command{"compare", "fit every candidate model to each of several curves, measure it on the others", setup_compare},
     Command{"export", "write a fitted model as shader source or a table", setup_export},
 };
 

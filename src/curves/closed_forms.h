@@ -7,6 +7,7 @@
 // Source: B. Mayaux, "Study Notes: Improved Ambient Occlusion", 2018 (the notes).
 #pragma once
 
+#include <array>
 #include <cmath>
 
 namespace hemibake {
@@ -86,5 +87,8 @@ T jimenez_cubic(X visibility, X albedo, const T* p) {
   const T c = p[4] * albedo + p[5];
   return ((a * visibility + b) * visibility + c) * visibility;
 }
+
+// Their constants, in that order.
+inline constexpr std::array<double, 6> kJimenezConstants = {2.0404, -0.3324, -4.7951, 0.6417, 2.7552, 0.6903};
 
 }  // namespace hemibake

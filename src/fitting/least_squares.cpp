@@ -134,21 +134,26 @@ Matrix covariance(const Formula& formula, const Evaluation& at, const std::vecto
   return result;
 }
 
-// Burnham & Anderson, "Model Selection and Multimodel Inference", 2002, eq. 7.3: n ln(Σ w r²/n) − Σ ln w, the
-// variance counted as one parameter more.
-// n: observations; the logarithm of a weight counts as its share of one.
-std::optional<double> small_sample_aic(const Evaluation& at, std::span<const CurvePoint> points, double n) {
-  const double share = n / static_cast<double>(points.size());
-  const double k = static_cast<double>(at.jacobian.cols()) + 1;
-  const double sum = at.residuals.squaredNorm();
-  if (n - k - 1 <= 0 || sum <= 0) return std::nullopt;
+// The criterion of weighted points: the likelihood of a point of weight w has the factor √w. points: each
+// observation counts once, however many points it has.
+std::optional<double> weighted_aic(const Evaluation& at, std::span<const CurvePoint> points,
+                                   double observations) {
+  const double count = static_cast<double>(points.size());
   double log_weights = 0;
   for (const CurvePoint& point : points) log_weights += std::log(point.weight);
-  return n * std::log(sum / static_cast<double>(points.size())) - share * log_weights + 2 * k +
-         2 * k * (k + 1) / (n - k - 1);
+  std::optional<double> aic = small_sample_aic(at.residuals.squaredNorm() / count, observations,
+                                               static_cast<int>(at.jacobian.cols()));
+  if (aic) *aic -= log_weights * observations / count;
+  return aic;
 }
 
 }  // namespace
+
+std::optional<double> small_sample_aic(double mean_square, double observations, int parameters) {
+  const double k = parameters + 1;
+  if (observations - k - 1 <= 0 || mean_square <= 0) return std::nullopt;
+  return observations * std::log(mean_square) + 2 * k + 2 * k * (k + 1) / (observations - k - 1);
+}
 
 Fit minimize(const Formula& formula, std::span<const CurvePoint> points,
              std::unique_ptr<ceres::CostFunction> cost) {
@@ -182,7 +187,7 @@ Fit minimize(const Formula& formula, std::span<const CurvePoint> points,
   }
   fit.rms = std::sqrt(sum / static_cast<double>(points.size()));
   fit.points = static_cast<int>(points.size());
-  fit.aicc = small_sample_aic(at, points, static_cast<double>(observations));
+  fit.aicc = weighted_aic(at, points, static_cast<double>(observations));
   return fit;
 }
 

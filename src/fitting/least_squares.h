@@ -64,6 +64,11 @@ Fit fit_formula(const Formula& formula, std::span<const CurvePoint> points, Valu
                   std::make_unique<Cost>(new Residuals(points, value), static_cast<int>(points.size())));
 }
 
+// Akaike's criterion for least squares: n ln(mean square) + 2K + 2K(K+1)/(n−K−1), K = parameters + 1 for the
+// variance (Burnham & Anderson, "Model Selection and Multimodel Inference", 2002, eq. 7.3). None where n is
+// too small.
+std::optional<double> small_sample_aic(double mean_square, double observations, int parameters);
+
 // The factor s that minimises Σ w (s·shape(α) − value)²; 0 where the shape vanishes at every point.
 template <class Shape>
 double best_scale(std::span<const CurvePoint> points, Shape shape) {

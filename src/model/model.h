@@ -114,7 +114,7 @@ struct GuardedModel {
 // bounces at once. visibility: E₀/π, the cosine-weighted visible fraction; with α instead it is wrong by the
 // difference of the two.
 struct JimenezModel {
-  std::array<double, 6> parameters = {2.0404, -0.3324, -4.7951, 0.6417, 2.7552, 0.6903};
+  std::array<double, 6> parameters = kJimenezConstants;
 
   template <class T>
   T total(T visibility, T albedo) const {
