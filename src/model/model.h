@@ -51,7 +51,8 @@ struct BoundedModel {
 };
 
 // The model of the notes of 2018 as it stands, eq. 7, 9, 10, 11. F₀ exceeds 1 for α above 0.949253 with the
-// published constants; from α = 0.8 on τ leaves 0..1, and the total has poles near there at every ρ below 1.
+// published constants; from α = 0.7633 on τ is below 0, then leaves on the other side, and the total has
+// poles near there at every ρ below 1.
 struct PublishedModel {
   double k = 0.5;
   double e = 0.75;

@@ -105,7 +105,7 @@ $function float blocked_irradiance(float ao) {
   return #1 - direct_irradiance(ao);
 }
 
-// 1 - tau = F1 / (1 - F0), cut at 1 where the formulas' F1 exceeds 1 - F0 (from about ao = 0.8 on), and just above 0.
+// 1 - tau = F1 / (1 - F0), cut at 1 where the formulas' F1 exceeds 1 - F0 (from about ao = 0.76 on), and just above 0.
 $function float escape_share(float ao) {
   float a = unit_range(ao);
   float b = #1 - a;
