@@ -61,11 +61,11 @@ T bounded_blocked_factor(X ao, const T& k0, const T& k1) {
 }
 
 // 1 − τ of the bounded model, the share of the light under way that each bounce sends out to the sky:
-// q(1 − d(1−F₀)²), which rises from q(1−d) in the dark to q in the open. q in (0, 1], d in [0, 1).
-// blocked: 1 − F₀, 0..1.
+// q(1 − d(1−F₀)/(1+3F₀)), which rises from q(1−d) in the dark to q in the open. q in (0, 1], d in [0, 1).
+// direct: F₀; blocked: 1 − F₀; 0..1.
 template <class T, class X>
-T bounded_escape_share(X blocked, const T& q, const T& d) {
-  return q * (T(1) - d * (blocked * blocked));
+T bounded_escape_share(X direct, X blocked, const T& q, const T& d) {
+  return q * (T(1) - d * (blocked / (X(1) + X(3) * direct)));
 }
 
 // E/π over all bounces, notes eq. 10 with F₁ = (1 − F₀)(1 − τ), so that no light is lost at albedo 1:

@@ -15,16 +15,16 @@ Fit fit_bounded_direct(std::span<const CurvePoint> points) {
 
 Fit fit_bounded_tau(std::span<const CurvePoint> points, int albedo_count, const Fit& direct) {
   Formula formula{
-      "bounded tau", "1 - q*(1 - d*(1-F0)^2)", {{"q", 0.001, 1}, {"d", 0, 0.999}}, {}, albedo_count};
+      "bounded tau", "1 - q*(1 - d*(1-F0)/(1+3*F0))", {{"q", 0.001, 1}, {"d", 0, 0.999}}, {}, albedo_count};
   for (const double q : {0.2, 0.5, 0.8}) {
     for (const double d : {0.3, 0.8}) formula.starts.push_back({q, d});
   }
   const double k0 = parameter_value(direct, "k0");
   const double k1 = parameter_value(direct, "k1");
   return fit_formula<2>(formula, points, [k0, k1](const auto* p, const CurvePoint& point) {
+    const double factor = bounded_direct_factor(point.ao, k0, k1);
     const double blocked = bounded_blocked_factor(point.ao, k0, k1);
-    return total_factor(bounded_direct_factor(point.ao, k0, k1), blocked,
-                        bounded_escape_share(blocked, p[0], p[1]), point.albedo);
+    return total_factor(factor, blocked, bounded_escape_share(factor, blocked, p[0], p[1]), point.albedo);
   });
 }
 

@@ -102,7 +102,14 @@ Prediction with_straight(const Curves& curves, DirectModel direct) {
 Prediction with_square(const Curves& curves, DirectModel direct) {
   return fit_escape<2>(
       curves, direct, {{"q", 0.001, 1}, {"d", 0, 0.999}}, {{0.5, 0.5}},
-      [](const auto* p, const Direct& at) { return bounded_escape_share(at.blocked, p[0], p[1]); });
+      [](const auto* p, const Direct& at) { return p[0] * (1.0 - p[1] * (at.blocked * at.blocked)); });
+}
+
+Prediction with_quotient(const Curves& curves, DirectModel direct) {
+  return fit_escape<2>(curves, direct, {{"q", 0.001, 1}, {"d", 0, 0.999}}, {{0.5, 0.5}},
+                       [](const auto* p, const Direct& at) {
+                         return bounded_escape_share(at.factor, at.blocked, p[0], p[1]);
+                       });
 }
 
 struct PublishedConstants {
@@ -179,10 +186,12 @@ const std::vector<Candidate>& candidates() {
        [](const Curves& curves) { return with_scaled_power(curves, fit_both(curves)); }},
       {"bounded, straight", "s = k0..k1; 1-tau = q(1 - d(1-a))", 4,
        [](const Curves& curves) { return with_straight(curves, fit_both(curves)); }},
-      {"overhead, square", "s = k0..1; 1-tau = q(1 - d(1-F0)^2)", 3,
-       [](const Curves& curves) { return with_square(curves, fit_overhead(curves)); }},
-      {"bounded", "s = k0..k1; 1-tau = q(1 - d(1-F0)^2)", 4,
+      {"bounded, square", "s = k0..k1; 1-tau = q(1 - d(1-F0)^2)", 4,
        [](const Curves& curves) { return with_square(curves, fit_both(curves)); }},
+      {"overhead", "s = k0..1; 1-tau = q(1 - d(1-F0)/(1+3F0))", 3,
+       [](const Curves& curves) { return with_quotient(curves, fit_overhead(curves)); }},
+      {"bounded", "s = k0..k1; 1-tau = q(1 - d(1-F0)/(1+3F0))", 4,
+       [](const Curves& curves) { return with_quotient(curves, fit_both(curves)); }},
       {"Jimenez 2016", "their constants, V = E0/pi", 0,
        [](const Curves&) { return jimenez_of(kJimenezConstants, false); }},
       {"Jimenez 2016, ao", "their constants, V = a", 0,

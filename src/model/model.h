@@ -34,7 +34,7 @@ struct BoundedModel {
   }
   template <class T>
   T escape(T ao) const {
-    return bounded_escape_share(blocked(ao), static_cast<T>(q), static_cast<T>(d));
+    return bounded_escape_share(direct(ao), blocked(ao), static_cast<T>(q), static_cast<T>(d));
   }
   template <class T>
   T first_bounce(T ao) const {
@@ -50,9 +50,9 @@ struct BoundedModel {
   }
 };
 
-// The model of the notes of 2018 as it stands, eq. 7, 9, 10, 11. F₀ exceeds 1 for α above 0.949253 with the
-// published constants; from α = 0.7633 on τ is below 0, then leaves on the other side, and the total has
-// poles near there at every ρ below 1.
+// The model of the notes of 2018 as it stands, eq. 7, 9, 10, 11. With the published constants τ is below 0
+// from α = 0.7633 on, F₀ exceeds 1 from 0.949253 on, where τ has a pole, and the total has one above that at
+// every ρ below 1.
 struct PublishedModel {
   double k = 0.5;
   double e = 0.75;

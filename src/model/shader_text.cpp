@@ -88,8 +88,7 @@ $function float blocked_irradiance(float ao) {
 
 // 1 - tau: the share of the light between the walls that each bounce sends out to the sky.
 $function float escape_share(float ao) {
-  float blocked = blocked_irradiance(ao);
-  return $q * (#1 - $d * blocked * blocked);
+  return $q * (#1 - $d * blocked_irradiance(ao) / (#1 + #3 * direct_irradiance(ao)));
 }
 )";
 
@@ -176,6 +175,7 @@ std::string assemble(std::string_view model, const Constants& constants, Languag
   for (const auto& [name, value] : constants) replace_all(body, name, literal(value, s));
   replace_all(body, "#0", literal(0, s));
   replace_all(body, "#1", literal(1, s));
+  replace_all(body, "#3", literal(3, s));
 
   std::string head;
   for (const std::string& line : origin) head += comment_line(line);
