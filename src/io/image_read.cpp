@@ -13,6 +13,7 @@
 #include "core/interrupt.h"
 #include "core/parallel.h"
 #include "io/image_io.h"
+#include "io/png_check.h"
 #include "surface/surface.h"
 
 namespace hemibake {
@@ -67,11 +68,24 @@ void check_windows(const fs::path& path, const OIIO::ImageSpec& spec) {
                        spec.full_x, spec.full_y));
 }
 
+// What OpenImageIO 2.4 reads wrongly without a word (tiffinput.cpp: unusual depths stay in a scratch buffer,
+// and only 8-bit values are inverted).
+void check_tiff(const fs::path& path, const OIIO::ImageSpec& spec) {
+  const int bits = spec.get_int_attribute("oiio:BitsPerSample");
+  if (spec.format.is_floating_point() && bits != 16 && bits != 32)
+    refuse(path, fmt::format("holds {}-bit floats, which cannot be read, expected 32-bit floats", bits));
+  constexpr int kMinIsWhite = 0;
+  if (spec.get_int_attribute("tiff:PhotometricInterpretation", 1) == kMinIsWhite &&
+      spec.format != OIIO::TypeDesc::UINT8)
+    refuse(path, "stores white as the least value in more than 8 bits, expected black there");
+}
+
 // An open image that passed every check that the header allows.
 class Reader {
  public:
   explicit Reader(const fs::path& path) : path_(path) {
     check_regular_file(path);
+    if (const std::string complaint = complaint_about_png(path); !complaint.empty()) refuse(path, complaint);
     OIIO::attribute("threads", thread_count());
     OIIO::attribute("exr_threads", thread_count());
     OIIO::ImageSpec hints;
@@ -81,7 +95,9 @@ class Reader {
       refuse(path, fmt::format("is not an image that can be read ({})", one_line(OIIO::geterror())));
     spec_ = input_->spec();
     check_usable(path, spec_);
-    if (std::string_view(input_->format_name()) == "openexr") check_windows(path, spec_);
+    const std::string_view format = input_->format_name();
+    if (format == "openexr") check_windows(path, spec_);
+    if (format == "tiff") check_tiff(path, spec_);
     if (input_->seek_subimage(1, 0)) refuse(path, "holds several images, expected one");
     input_->geterror();  // what seeking said
   }

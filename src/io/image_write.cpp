@@ -87,6 +87,29 @@ void add_attributes(OIIO::ImageSpec& spec, const Provenance& provenance) {
   if (!provenance.empty()) spec.attribute("hemibake:provenance", provenance.dump());
 }
 
+// Calls refuse(place, value) for the first value for which usable(value) does not hold.
+template <class Usable, class Refuse>
+void check_values(int width, int height, std::span<const Plane> planes, Usable usable, Refuse refuse) {
+  const size_t texels = static_cast<size_t>(width) * static_cast<size_t>(height);
+  for (const Plane& plane : planes)
+    for (size_t i = 0; i < texels; ++i) {
+      const float value = plane.first[i * plane.stride];
+      if (usable(value)) continue;
+      const auto columns = static_cast<size_t>(width);
+      refuse(
+          fmt::format("channel {} is {} at texel ({}, {})", plane.channel, value, i % columns, i / columns));
+    }
+}
+
+void check_finite(const fs::path& path, int width, int height, std::span<const Plane> planes) {
+  check_values(
+      width, height, planes, [](float value) { return std::isfinite(value); },
+      [&](const std::string& what) {
+        throw std::logic_error(
+            fmt::format("internal check failed: {}: {}, expected a finite number", path.string(), what));
+      });
+}
+
 // An image being written into an OutputFile.
 class Writer {
  public:
@@ -99,7 +122,7 @@ class Writer {
     if (!output_->open(path.string(), spec_)) fail();
   }
 
-  // Interleaves and writes block by block. convert(value, k, texel) gives the sample of planes[k].
+  // Interleaves and writes block by block.
   template <class Sample, class Convert>
   void write(std::span<const Plane> planes, Convert convert) {
     const int rows = rows_per_block();
@@ -111,12 +134,8 @@ class Writer {
       const size_t first_texel = static_cast<size_t>(begin) * width;
       const size_t texels = static_cast<size_t>(end - begin) * width;
       for (size_t k = 0; k < planes.size(); ++k)
-        for (size_t i = 0; i < texels; ++i) {
-          const size_t texel = first_texel + i;
-          const float value = planes[k].first[texel * planes[k].stride];
-          if (!std::isfinite(value)) fail_value(planes[k].channel, texel, value);
-          block[i * planes.size() + k] = convert(value, k, texel);
-        }
+        for (size_t i = 0; i < texels; ++i)
+          block[i * planes.size() + k] = convert(planes[k].first[(first_texel + i) * planes[k].stride]);
       if (!output_->write_scanlines(begin, end, 0, OIIO::BaseTypeFromC<Sample>::value, block.data())) fail();
     }
     const bool closed = output_->close();
@@ -133,14 +152,6 @@ class Writer {
   [[noreturn]] void fail() const {
     if (proxy_.error_number() != 0) fail_write(file_.path(), proxy_.error_number());
     throw InputError(fmt::format("{}: could not write: {}", file_.path().string(), output_->geterror()));
-  }
-
-  [[noreturn]] void fail_value(const std::string& channel, size_t texel, float value) const {
-    const auto width = static_cast<size_t>(spec_.width);
-    throw std::logic_error(
-        fmt::format("internal check failed: channel {} of {} is {} at texel ({}, {}), expected a "
-                    "finite number",
-                    channel, file_.path().string(), value, texel % width, texel / width));
   }
 
   OutputFile file_;
@@ -164,7 +175,7 @@ void write_exr(const fs::path& path, int width, int height, std::span<const Plan
   OIIO::ImageSpec spec = make_spec(width, height, planes, OIIO::TypeDesc::FLOAT, provenance);
   spec.attribute("compression", "zip");
   spec.attribute("DateTime", "");  // else it writes the time of day, and no two runs give the same bytes
-  Writer(path, "openexr", spec).write<float>(planes, [](float value, size_t, size_t) { return value; });
+  Writer(path, "openexr", spec).write<float>(planes, [](float value) { return value; });
 }
 
 void write_png16(const fs::path& path, int width, int height, std::span<const Plane> planes,
@@ -172,12 +183,14 @@ void write_png16(const fs::path& path, int width, int height, std::span<const Pl
   if (planes.size() > 4)
     throw InputError(
         fmt::format("{}: {} channels do not fit a PNG, expected an .exr", path.string(), planes.size()));
+  check_values(
+      width, height, planes, [](float value) { return value >= 0 && value <= 1; },
+      [&](const std::string& what) {
+        throw InputError(
+            fmt::format("{}: {}, expected 0..1 in a PNG (an .exr takes any)", path.string(), what));
+      });
   const OIIO::ImageSpec spec = make_spec(width, height, planes, OIIO::TypeDesc::UINT16, provenance);
-  Writer(path, "png", spec).write<uint16_t>(planes, [&](float value, size_t k, size_t texel) {
-    if (!(value >= 0 && value <= 1))
-      throw InputError(fmt::format(
-          "{}: channel {} is {} at texel ({}, {}), expected 0..1 in a PNG (an .exr takes any)", path.string(),
-          planes[k].channel, value, texel % static_cast<size_t>(width), texel / static_cast<size_t>(width)));
+  Writer(path, "png", spec).write<uint16_t>(planes, [](float value) {
     return static_cast<uint16_t>(std::lround(static_cast<double>(value) * 65535.0));
   });
 }
@@ -187,6 +200,7 @@ void write_png16(const fs::path& path, int width, int height, std::span<const Pl
 void write_image(const fs::path& path, int width, int height, std::span<const Plane> planes,
                  const Provenance& provenance) {
   if (width < 1 || height < 1 || planes.empty()) throw std::logic_error("an image to write is empty");
+  check_finite(path, width, height, planes);
   const std::string extension = lower_case_extension(path);
   if (extension == ".exr") return write_exr(path, width, height, planes, provenance);
   if (extension == ".png") return write_png16(path, width, height, planes, provenance);
@@ -203,9 +217,10 @@ void write_png8_rgb(const fs::path& path, const Grid<glm::vec3>& picture, const 
   if (picture.empty()) throw std::logic_error("a picture to write is empty");
   const std::array planes{Plane{"R", &picture.values[0].x, 3}, Plane{"G", &picture.values[0].y, 3},
                           Plane{"B", &picture.values[0].z, 3}};
+  check_finite(path, picture.width, picture.height, planes);
   OIIO::ImageSpec spec = make_spec(picture.width, picture.height, planes, OIIO::TypeDesc::UINT8, provenance);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  Writer(path, "png", spec).write<uint8_t>(planes, [](float value, size_t, size_t) {
+  Writer(path, "png", spec).write<uint8_t>(planes, [](float value) {
     return static_cast<uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
   });
 }

@@ -20,7 +20,7 @@ namespace {
 
 // The scene is in units of texels: vertices then stand on integers, which float holds exactly on any map we take.
 constexpr int kSmallestBlock = 64;  // texels: smaller maps are repeated, so that a step to the next copy is worth it
-constexpr int kMargin = 64;         // texels of neighbouring copies around the block
+constexpr int kMargin = 64;  // texels of neighbouring copies around the block
 constexpr uint32_t kNoFacet = 0xffffffff;
 
 // Hash streams, one per use.

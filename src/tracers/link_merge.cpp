@@ -56,13 +56,17 @@ void add_bilinear_links(const Surface& surface, glm::dvec2 position, double weig
   add_link(surface, x + 1, y + 1, weight * fx * fy, links);
 }
 
+void combine_links(std::vector<Link>& links) {
+  sum_equal_patches(links);
+  std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.patch < b.patch; });
+}
+
 void merge_links(Row& row) {
   if (row.links.empty()) {
     row.direct_over_pi = 1;
     return;
   }
-  sum_equal_patches(row.links);
-  std::sort(row.links.begin(), row.links.end(), [](const Link& a, const Link& b) { return a.patch < b.patch; });
+  combine_links(row.links);
   double total = 0;
   Link* largest = &row.links.front();
   for (Link& link : row.links) {

@@ -25,8 +25,9 @@ TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, 
       const uint32_t end = std::min(row_count, begin + Links::kRowsPerBlock);
       for (uint32_t index = begin; index < end; ++index) {
         trace_row(index, row, counts[b]);
-        if (!(row.direct_over_pi >= 0 && row.direct_over_pi <= 1))
-          throw std::logic_error(fmt::format("row {}: E0/pi is {}, expected 0..1", index, row.direct_over_pi));
+        // Up to 2: the march with published weights in a narrow cone.
+        if (!(row.direct_over_pi >= 0 && row.direct_over_pi <= 2))
+          throw std::logic_error(fmt::format("row {}: E0/pi is {}, expected 0..2", index, row.direct_over_pi));
         store(index, row);
         if (links != nullptr) append_row(links->blocks[b], row.links);
       }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <stdlib.h>
+#include <sys/mount.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -39,6 +40,25 @@ class TemporaryFolder {
 
  private:
   std::filesystem::path path_;
+};
+
+// A disk of 128 KiB where mounting is permitted.
+class SmallDisk {
+ public:
+  SmallDisk() : mounted_(mount("tmpfs", folder_.path().c_str(), "tmpfs", 0, "size=128k") == 0) {}
+  ~SmallDisk() {
+    if (mounted_) umount(folder_.path().c_str());
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+  bool mounted() const { return mounted_; }
+  std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
+  size_t count() const { return folder_.count(); }
+
+ private:
+  TemporaryFolder folder_;
+  bool mounted_;
 };
 
 inline std::string read_bytes(const std::filesystem::path& path) {

@@ -1,14 +1,7 @@
 #include "io/output_file.h"
 
 #include <gmock/gmock.h>
-#include <sys/mount.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
 
-#include <csignal>
-#include <cstdlib>
-
-#include "core/interrupt.h"
 #include "io/io_testing.h"
 
 namespace hemibake {
@@ -108,16 +101,15 @@ TEST(OutputFile, CheckOutputPathLeavesNothing) {
 }
 
 TEST(OutputFile, FullDiskIsOneLineAndLeavesNothing) {
-  const TemporaryFolder folder;
-  if (mount("tmpfs", folder.path().c_str(), "tmpfs", 0, "size=64k") != 0) GTEST_SKIP() << "may not mount";
+  const SmallDisk disk;
+  if (!disk.mounted()) GTEST_SKIP() << "may not mount a disk";
   const std::string text = error_of<InputError>([&] {
-    OutputFile file(folder / "out.csv");
+    OutputFile file(disk / "out.csv");
     file.write(std::string(1 << 20, 'x'));
     file.commit();
   });
   EXPECT_THAT(text, EndsWith("out.csv: could not write: No space left on device"));
-  EXPECT_EQ(folder.count(), 0u);
-  umount(folder.path().c_str());
+  EXPECT_EQ(disk.count(), 0u);
 }
 
 }  // namespace
