@@ -14,7 +14,7 @@ namespace hemibake {
 namespace {
 
 // Rows given to a tracer at once: neighbours that it may answer together.
-constexpr uint32_t kRowsAtOnce = 256;
+constexpr uint32_t kRowsAtOnce = 1024;
 
 // Traces rows [0, row_count) block by block; store(index, row) keeps what the caller wants of each.
 template <class TraceRows, class Store>
