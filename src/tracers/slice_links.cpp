@@ -39,6 +39,10 @@ SliceStretchSums sums_between(double low_slope, double high_slope) {
           (sin_high * sin_high - sin_low * sin_low) / 2};
 }
 
+double stretch_distance(const Surface& surface, const Stretch& stretch, glm::dvec2 direction, double slope) {
+  return StretchLine(surface, stretch, direction).distance_at(slope);
+}
+
 Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 direction, double max_distance) {
   const StretchLine line(surface, stretch, direction);
   const bool near_inside = line.ray_length(line.near) < max_distance;

@@ -15,6 +15,9 @@ struct SliceStretchSums {
 };
 SliceStretchSums sums_between(double low_slope, double high_slope);
 
+// Horizontal distance, texels, at which a slope between low and high meets the stretch.
+double stretch_distance(const Surface& surface, const Stretch& stretch, glm::dvec2 direction, double slope);
+
 // The piece of a stretch nearer than `max_distance` texels along the ray; nothing where low ≥ high. `direction` is the
 // azimuth's.
 Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 direction, double max_distance);
