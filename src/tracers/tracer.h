@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 namespace hemibake {
@@ -55,6 +56,18 @@ class Tracer {
   // Fills `row`, its links only if `with_links`. Adds to `counts`.
   virtual void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const = 0;
   virtual void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const = 0;
+  // Rows of the receivers first, first + 1, …: the same as one by one, for tracers that answer neighbours
+  // together.
+  virtual void trace_texels(uint32_t first, bool with_links, std::span<Row> rows,
+                            TracerCounts& counts) const {
+    for (size_t i = 0; i < rows.size(); ++i)
+      trace_texel(first + static_cast<uint32_t>(i), with_links, rows[i], counts);
+  }
+  virtual void trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
+                             TracerCounts& counts) const {
+    for (size_t i = 0; i < rows.size(); ++i)
+      trace_patch(first + static_cast<uint32_t>(i), with_links, rows[i], counts);
+  }
   // Every ray trace_texel shoots for this texel, in order.
   virtual std::vector<RayRecord> replay_texel(uint32_t texel) const = 0;
 };
