@@ -24,8 +24,9 @@ struct BakeCommandOptions {
   bool dry_run = false;
 };
 
-int run_bake(const BakeCommandOptions& options) {
+int run_bake(const CLI::App& app, BakeCommandOptions& options) {
   apply_common_options(options.common);
+  settle_bake_options(app, options.bake);
   const bool writes = options.texel.empty() && !options.dry_run;
   if (writes && options.output.empty()) throw InputError("--output: missing, expected -o BAKE.exr");
   if (writes) check_bake_output(options.bake, options.output, {".exr"});
@@ -68,7 +69,7 @@ CommandBody setup_bake(CLI::App& app) {
       ->group("Output");
   app.add_flag("--dry-run", options->dry_run, "say memory and work, bake nothing")->group("Output");
   add_common_options(app, options->common);
-  return [options] { return run_bake(*options); };
+  return [&app, options] { return run_bake(app, *options); };
 }
 
 }  // namespace hemibake

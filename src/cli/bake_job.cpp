@@ -7,15 +7,11 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "cli/name_file.h"
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
-#include "io/image_io.h"
 #include "io/links_file.h"
-#include "surface/normals.h"
-#include "tracers/embree.h"
 #include "transport/bounces.h"
 #include "transport/trace_surface.h"
 
@@ -25,27 +21,12 @@ namespace {
 constexpr double kGib = 1024.0 * 1024 * 1024;
 constexpr size_t kTexelsNamed = 5;  // of those that did not converge
 
-Surface load_surface(const BakeOptions& options) {
-  Grid<float> heights = read_height_map(options.map, options.channel);
-  Surface surface = name_file(options.map, [&] {
-    return make_surface(std::move(heights), options.size_m, options.amplitude_m, edge_of(options));
-  });
-  if (!options.normal_map.empty()) {
-    const auto encoded = read_normal_map(options.normal_map, surface.width(), surface.height());
-    const NormalY convention = options.normal_y == "up" ? NormalY::kUp : NormalY::kDown;
-    surface.normals = name_file(options.normal_map, [&] { return decode_normal_map(encoded, convention); });
-  } else if (options.normals_from == "faces") {
-    surface.normals = angle_weighted_normals(surface);
-  }
-  return surface;
-}
-
 PlanOptions plan_options(const BakeJob& job) {
   PlanOptions plan;
-  plan.patches = ray_options(job.options).patches;
+  plan.patches = patches_of(job.options);
   plan.with_links = job.options.needs_links();
   plan.bounces = job.options.wants("irradiance") ? job.options.bounces : 0;
-  plan.scene_bytes = embree_scene_bytes(job.surface);
+  plan.scene_bytes = tracer_bytes(job.options, job.map.surface);
   return plan;
 }
 
@@ -61,25 +42,24 @@ void refuse_beyond_memory(const BakeJob& job, const BakePlan& plan) {
 // Everything that decides the bytes of the result.
 Provenance provenance_of(const BakeOptions& options, const Surface& surface) {
   Provenance p = make_provenance(command_line(process_arguments()), options.map);
-  p["size_m"] = options.size_m;
-  p["amplitude_m"] = options.amplitude_m;
+  record_map_options(options, p);
   p["texel_size_m"] = surface.texel_size_m;
-  p["edge"] = options.edge;
-  p["channel"] = options.channel.empty() ? "default" : options.channel;
-  p["normals"] =
-      options.normal_map.empty() ? "from " + options.normals_from : options.normal_map.filename().string();
-  if (!options.normal_map.empty()) {
-    p["normals_sha256"] = sha256_of_file(options.normal_map);
-    p["normal_y"] = options.normal_y;
-  }
   p["tracer"] = options.tracer;
   p["rays"] = options.rays;
   p["cone_degrees"] = options.cone_degrees;
-  p["directions"] = options.directions;
   if (options.max_distance_m) p["max_distance_m"] = *options.max_distance_m;
   p["seed"] = options.seed;
   p["patches"] = options.patches;
-  if (options.patches == "texels") p["texel_links"] = options.texel_links;
+  if (options.tracer == "march") {
+    p["max_steps"] = options.max_steps;
+    p["lift_percent"] = options.lift_percent;
+    p["ray_set"] = options.ray_set;
+    p["lookup"] = options.lookup;
+    p["normalize"] = options.normalize;
+    p["normal_length"] = options.normal_length;
+  }
+  if (options.tracer != "march") p["directions"] = options.directions;
+  if (options.tracer != "march" && options.patches == "texels") p["texel_links"] = options.texel_links;
   p["outputs"] = fmt::format("{}", fmt::join(options.outputs, ","));
   p["bounces"] = options.bounces;
   if (options.converge) {
@@ -162,13 +142,12 @@ double mean_of(const Grid<float>& plane) { return mean(std::span<const float>(pl
 }  // namespace
 
 void prepare_bake(const BakeOptions& options, bool only_plan, BakeJob& job) {
-  check_bake_options(options);
   job.options = options;
-  job.surface = load_surface(options);
+  job.map = load_bake_map(options);
   // Twice: before the scene is built, which may be too large already, and with the links a pilot finds.
-  if (!only_plan) refuse_beyond_memory(job, plan_planes(job.surface, plan_options(job)));
-  job.tracer = make_embree_tracer(job.surface, ray_options(options));
-  job.plan = plan_bake(job.surface, *job.tracer, plan_options(job));
+  if (!only_plan) refuse_beyond_memory(job, plan_planes(job.map.surface, plan_options(job)));
+  job.tracer = make_tracer(options, job.map);
+  job.plan = plan_bake(job.map.surface, *job.tracer, plan_options(job));
   if (!only_plan) refuse_beyond_memory(job, job.plan);
 }
 
@@ -177,15 +156,15 @@ BakeResult perform_bake(const BakeJob& job) {
   const auto start = std::chrono::steady_clock::now();
   const double cpu_start = process_cpu_seconds();
   BakeResult result;
-  result.provenance = provenance_of(options, job.surface);
+  result.provenance = provenance_of(options, job.map.surface);
 
-  Visibility seen = trace_surface(*job.tracer, job.surface.width(), job.surface.height(),
-                                  ray_options(options).patches, options.needs_links());
+  Visibility seen = trace_surface(*job.tracer, job.map.surface.width(), job.map.surface.height(),
+                                  patches_of(options), options.needs_links());
   result.rays = seen.counts.rays;
   result.trace_cpu_seconds = process_cpu_seconds() - cpu_start;
   record_tracing(seen, result.provenance);
   if (!seen.gather.empty()) {
-    result.link_energy = measure_link_energy(job.surface, seen);
+    result.link_energy = measure_link_energy(job.map.surface, seen);
     record_link_energy(*result.link_energy, result.provenance);
   }
 
@@ -198,7 +177,7 @@ BakeResult perform_bake(const BakeJob& job) {
     write_links(options.links, seen.gather, seen.patches.empty() ? nullptr : &seen.patches,
                 irradiance_of(seen.patch_direct()), result.provenance);
   result.warnings = warnings_of(options, seen, bounces);
-  store_planes(options, job.surface, seen, bounces, result.bake);
+  store_planes(options, job.map.surface, seen, bounces, result.bake);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.cpu_seconds = process_cpu_seconds() - cpu_start;
   return result;

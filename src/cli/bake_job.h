@@ -7,8 +7,8 @@
 #include <string>
 
 #include "cli/bake_options.h"
+#include "cli/bake_surface.h"
 #include "io/provenance.h"
-#include "surface/surface.h"
 #include "tracers/tracer.h"
 #include "transport/bake.h"
 #include "transport/energy.h"
@@ -16,10 +16,10 @@
 
 namespace hemibake {
 
-// The map, read and made ready. `tracer` refers to `surface`: a job stays where it is.
+// The map, read and made ready. `tracer` refers to `map`: a job stays where it is.
 struct BakeJob {
   BakeOptions options;
-  Surface surface;
+  BakeMap map;
   std::unique_ptr<Tracer> tracer;
   BakePlan plan;
 
@@ -28,8 +28,8 @@ struct BakeJob {
   BakeJob& operator=(const BakeJob&) = delete;
 };
 
-// Reads the map and the normal map, builds the tracer and plans the bake. Throws InputError where the input cannot be
-// used, or where the bake needs more memory than allowed (not with `only_plan`).
+// Reads the map and the normal map, builds the tracer and plans the bake. Throws InputError where the input
+// cannot be used, or where the bake needs more memory than allowed (not with `only_plan`).
 void prepare_bake(const BakeOptions& options, bool only_plan, BakeJob& job);
 
 struct BakeResult {

@@ -16,6 +16,7 @@ namespace {
 constexpr int kMaxRays = 1 << 20;
 constexpr int kMaxStoredBounces = 1000;
 constexpr int kMaxBounces = 1000000;
+constexpr int kMaxSteps = 10000000;
 constexpr double kLargestLengthM = 1e9;
 
 }  // namespace
@@ -61,8 +62,9 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->capture_default_str()
       ->group("Surface");
 
-  app.add_option("--tracer", options.tracer, "how visibility is found")
-      ->check(CLI::IsMember({"embree"}))
+  app.add_option("--tracer", options.tracer,
+                 "how visibility is found: rays with Embree, or the texel march of 2018")
+      ->check(CLI::IsMember({"embree", "march"}))
       ->capture_default_str()
       ->group("Tracing");
   app.add_option("--rays", options.rays, "rays per texel and per patch")
@@ -88,10 +90,61 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->capture_default_str()
       ->group("Tracing");
 
-  app.add_option("--patches", options.patches,
-                 "what re-emits light: the surface's triangles, or the texels (as published in 2018)")
-      ->check(CLI::IsMember({"facets", "texels"}))
+  app.add_option("--preset", options.preset,
+                 "published: the experiment of 2018, all options of this group and --tracer march --rays "
+                 "1024 --cone 179 "
+                 "--normal-y up; any of them given too wins")
+      ->check(CLI::IsMember({"published"}))
+      ->group("March");
+  app.add_option("--max-steps", options.max_steps,
+                 "steps of a texel after which a march is sky [published: 200]")
+      ->check(whole_number_in(1, kMaxSteps))
       ->capture_default_str()
+      ->group("March");
+  app.add_option("--lift", options.lift_percent,
+                 "height of a march's start over its texel, percent of the amplitude [1]")
+      ->check(number_in(0, 100))
+      ->capture_default_str()
+      ->group("March");
+  app.add_option("--filter-radius", options.filter_radius,
+                 "bilateral filter of the heights first, texels; 0: none [1]")
+      ->check(number_in(0, 16))
+      ->capture_default_str()
+      ->group("March");
+  app.add_option("--filter-tolerance", options.filter_tolerance, "its range, in map values 0..1 [0.2]")
+      ->check(positive_to(1e6))
+      ->capture_default_str()
+      ->group("March");
+  app.add_option("--filter-sum", options.filter_sum,
+                 "its whole kernel, or the part the published shader adds up [published]")
+      ->check(CLI::IsMember({"all", "published"}))
+      ->capture_default_str()
+      ->group("March");
+  app.add_option("--ray-set", options.ray_set,
+                 "turned per texel, or one set for all as published [published]")
+      ->check(CLI::IsMember({"rotated", "published"}))
+      ->capture_default_str()
+      ->group("March");
+  app.add_option("--lookup", options.lookup,
+                 "heights between texels: bilinear, or as the published sampler did [published]")
+      ->check(CLI::IsMember({"bilinear", "published"}))
+      ->capture_default_str()
+      ->group("March");
+  app.add_option("--normalize", options.normalize,
+                 "weights that sum to 1, or 2 cos/N as published [published]")
+      ->check(CLI::IsMember({"exact", "published"}))
+      ->capture_default_str()
+      ->group("March");
+  app.add_option("--normal-length", options.normal_length,
+                 "rays follow unit normals, or the map's as stored [stored]")
+      ->check(CLI::IsMember({"unit", "stored"}))
+      ->capture_default_str()
+      ->group("March");
+
+  app.add_option("--patches", options.patches,
+                 "what re-emits light: the surface's triangles (default), or the texels (as published in "
+                 "2018; the only ones of march)")
+      ->check(CLI::IsMember({"facets", "texels"}))
       ->group("Light");
   app.add_option("--texel-links", options.texel_links,
                  "with --patches texels: a hit links to the nearest texel or to four")
@@ -128,7 +181,38 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->group("Output");
 }
 
-void check_bake_options(const BakeOptions& options) {
+namespace {
+
+void apply_published_preset(const CLI::App& app, BakeOptions& options) {
+  const auto set = [&app](const char* name, auto& option, const auto& value) {
+    if (app.get_option(name)->count() == 0) option = value;
+  };
+  const MarchOptions march = published_march();
+  const FilterOptions filter = published_filter();
+  set("--tracer", options.tracer, "march");
+  set("--rays", options.rays, march.rays);
+  set("--cone", options.cone_degrees, march.cone_degrees);
+  set("--max-steps", options.max_steps, march.max_steps);
+  set("--lift", options.lift_percent, march.lift_percent);
+  set("--filter-radius", options.filter_radius, filter.radius);
+  set("--filter-tolerance", options.filter_tolerance, filter.tolerance);
+  set("--filter-sum", options.filter_sum, "published");
+  set("--ray-set", options.ray_set, "published");
+  set("--lookup", options.lookup, "published");
+  set("--normalize", options.normalize, "published");
+  if (options.normal_map.empty()) return;
+  set("--normal-length", options.normal_length, "stored");
+  set("--normal-y", options.normal_y, "up");
+}
+
+}  // namespace
+
+void settle_bake_options(const CLI::App& app, BakeOptions& options) {
+  if (options.preset == "published") apply_published_preset(app, options);
+  if (options.patches.empty()) options.patches = options.tracer == "march" ? "texels" : "facets";
+
+  if (options.tracer == "march" && options.patches == "facets")
+    throw InputError("--patches: a march knows no facets, expected texels with --tracer march");
   if (!options.normal_map.empty() && options.normal_y.empty())
     throw InputError(
         options.normal_map.string() +
@@ -137,6 +221,8 @@ void check_bake_options(const BakeOptions& options) {
     throw InputError("--normal-y: there is no normal map, expected --normals FILE with it");
   if (!options.normal_map.empty() && options.normals_from != "heights")
     throw InputError("--normals-from: normals come from --normals already, expected one of the two");
+  if (options.normal_length == "stored" && (options.normal_map.empty() || options.tracer != "march"))
+    throw InputError("--normal-length: stored lengths need --normals and --tracer march, expected both");
   if (options.converge && !options.wants("irradiance"))
     throw InputError("--converge: irradiance is not among --outputs, expected it there");
 }
@@ -157,10 +243,34 @@ RayOptions ray_options(const BakeOptions& options) {
   rays.cone_degrees = options.cone_degrees;
   if (options.max_distance_m) rays.max_distance_m = *options.max_distance_m;
   rays.directions = options.directions == "uniform" ? DirectionSet::kUniform : DirectionSet::kCosine;
-  rays.patches = options.patches == "facets" ? Patches::kFacets : Patches::kTexels;
+  rays.patches = patches_of(options);
   rays.texel_links = options.texel_links == "nearest" ? TexelLinks::kNearest : TexelLinks::kBilinear;
   rays.seed = options.seed;
   return rays;
+}
+
+FilterOptions filter_options(const BakeOptions& options) {
+  return {options.filter_radius, options.filter_tolerance,
+          options.filter_sum == "published" ? FilterSum::kPublished : FilterSum::kAll};
+}
+
+MarchOptions march_options(const BakeOptions& options) {
+  MarchOptions march;
+  march.rays = options.rays;
+  march.cone_degrees = options.cone_degrees;
+  if (options.max_distance_m) march.max_distance_m = *options.max_distance_m;
+  march.max_steps = options.max_steps;
+  march.lift_percent = options.lift_percent;
+  march.ray_set = options.ray_set == "published" ? MarchRays::kPublished : MarchRays::kRotated;
+  march.weights = options.normalize == "published" ? MarchWeights::kPublished : MarchWeights::kExact;
+  march.lookup = options.lookup == "published" ? MarchLookup::kPublished : MarchLookup::kBilinear;
+  march.seed = options.seed;
+  march.amplitude_m = options.amplitude_m;
+  return march;
+}
+
+Patches patches_of(const BakeOptions& options) {
+  return options.patches == "facets" ? Patches::kFacets : Patches::kTexels;
 }
 
 Edge edge_of(const BakeOptions& options) { return options.edge == "wrap" ? Edge::kWrap : Edge::kOpen; }

@@ -9,7 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "surface/filter.h"
 #include "surface/surface.h"
+#include "tracers/march.h"
 #include "tracers/ray_options.h"
 
 namespace CLI {
@@ -31,9 +33,20 @@ struct BakeOptions {
   int rays = 256;
   double cone_degrees = 180;
   std::string directions = "uniform";
-  std::string patches = "facets";
+  std::string patches;  // empty: what the tracer has (facets, where it has both)
   std::string texel_links = "bilinear";
   std::optional<double> max_distance_m;
+  // --tracer march, and what it marches over.
+  double filter_radius = 0;
+  double filter_tolerance = 0.2;
+  std::string filter_sum = "all";
+  int max_steps = 200;
+  double lift_percent = 1;
+  std::string ray_set = "rotated";
+  std::string lookup = "bilinear";
+  std::string normalize = "exact";
+  std::string normal_length = "unit";
+  std::string preset;
   int bounces = 20;
   std::optional<double> converge;
   int max_bounces = 2000;
@@ -49,8 +62,10 @@ struct BakeOptions {
 // Declares them on `app`: one definition per option.
 void add_bake_options(CLI::App& app, BakeOptions& options);
 
-// What no single option can know: throws InputError for combinations that make no sense.
-void check_bake_options(const BakeOptions& options);
+// Fills in what follows from other options: the preset (where its options were not given on the command line
+// of `app`) and the tracer's patches. Then what no single option can know: throws InputError for combinations
+// that make no sense.
+void settle_bake_options(const CLI::App& app, BakeOptions& options);
 
 // Fails before the work where `output` cannot be written, or is what the bake reads. suffixes: see
 // io/output_file.h.
@@ -58,6 +73,10 @@ void check_bake_output(const BakeOptions& options, const std::filesystem::path& 
                        std::initializer_list<std::string_view> suffixes = {});
 
 RayOptions ray_options(const BakeOptions& options);
+FilterOptions filter_options(const BakeOptions& options);
+// Without what only the map knows (MarchOptions::lowest_m, normal_lengths).
+MarchOptions march_options(const BakeOptions& options);
+Patches patches_of(const BakeOptions& options);
 Edge edge_of(const BakeOptions& options);
 
 }  // namespace hemibake

@@ -13,7 +13,9 @@
 namespace hemibake {
 
 // One per file in cli/.
+CommandBody setup_compare(CLI::App& app);
 CommandBody setup_curves(CLI::App& app);
+CommandBody setup_export(CLI::App& app);
 CommandBody setup_fit(CLI::App& app);
 CommandBody setup_synth(CLI::App& app);
 CommandBody setup_bake(CLI::App& app);
@@ -31,6 +33,8 @@ constexpr std::array kCommands = {
     Command{"bake", "trace the light on a height map", setup_bake},
     Command{"curves", "sort the texels of a bake by AO: mean and spread of every bounce", setup_curves},
     Command{"fit", "fit models to curves", setup_fit},
+    Command{"compare", "fit every candidate model to each of several curves, measure it on the others", setup_compare},
+    Command{"export", "write a fitted model as shader source or a table", setup_export},
     Command{"check", "check that light is neither made nor lost", setup_check},
     Command{"run", "bake, curves, fit and check in one go", setup_run},
 };

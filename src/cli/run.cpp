@@ -99,8 +99,9 @@ std::optional<FitFile> write_fits_of(const Curves& curves, const RunOptions& opt
   return fits;
 }
 
-int run_all(const RunOptions& options) {
+int run_all(const CLI::App& app, RunOptions& options) {
   apply_common_options(options.common);
+  settle_bake_options(app, options.bake);
   if (!options.bake.wants("ao") || !options.bake.wants("irradiance"))
     throw InputError("--outputs: curves need ao and irradiance, expected both among them");
   const ResultFolder folder(options.folder);
@@ -147,7 +148,7 @@ CommandBody setup_run(CLI::App& app) {
       ->group("Output");
   add_bins_option(app, options->bins)->group("Output");
   add_common_options(app, options->common);
-  return [options] { return run_all(*options); };
+  return [&app, options] { return run_all(app, *options); };
 }
 
 }  // namespace hemibake

@@ -7,6 +7,7 @@
 // Source: B. Mayaux, "Study Notes: Improved Ambient Occlusion", 2018 (the notes).
 #pragma once
 
+#include <array>
 #include <cmath>
 
 namespace hemibake {
@@ -44,9 +45,10 @@ T bounce_factor(X ao, const T& a, const T& b, const T& c) {
   return ao * rest * sqrt(rest) * a * exp(-b * pow(ao, c));
 }
 
-// The bounded model (fits/README.md says how it was chosen). With F₀ = α(1 + (1−α) s(α)) every s in 0..1 lies
-// between plain AO and α(2−α), the most that any surface lets in (all visible sky straight overhead); here s
-// = k0 + (k1 − k0) α², so that k0 and k1 in 0..1 are all the constraint there is, and F₀ rises from 0 to 1.
+// The bounded model (fits/README.md says how it was chosen): F₀ = α(1 + (1−α) s(α)). What a surface can let
+// in lies between α² (s = −1: all the visible sky along the horizon) and α(2−α) (s = 1: all of it overhead);
+// s = 0 is plain AO. With s = k0 + (k1 − k0) α² every k0 and k1 in −1..1 keeps F₀ between these two, rising
+// from 0 to 1.
 template <class T, class X>
 T bounded_direct_factor(X ao, const T& k0, const T& k1) {
   return ao * (T(1) + (X(1) - ao) * (k0 + (k1 - k0) * (ao * ao)));
@@ -58,22 +60,21 @@ T bounded_blocked_factor(X ao, const T& k0, const T& k1) {
   return (X(1) - ao) * (T(1) - ao * (k0 + (k1 - k0) * (ao * ao)));
 }
 
-// q = 1 − τ, the share of the light under way that each bounce sends out to the sky: F₀ⁿ. n = 1 is exact in a
-// spherical pit (every point sees every other alike); n < 1: light leaves sooner than a texel's own F₀ says.
+// 1 − τ of the bounded model, the share of the light under way that each bounce sends out to the sky:
+// q(1 − d(1−F₀)/(1+3F₀)), which rises from q(1−d) in the dark to q in the open. q in (0, 1], d in [0, 1).
+// direct: F₀; blocked: 1 − F₀; 0..1.
 template <class T, class X>
-T escape_share(X direct, const T& n) {
-  using std::pow;
-  return pow(direct, n);
+T bounded_escape_share(X direct, X blocked, const T& q, const T& d) {
+  return q * (T(1) - d * (blocked / (X(1) + X(3) * direct)));
 }
 
-// E/π over all bounces, notes eq. 10 with F₁ = (1 − F₀)(1 − τ), so that all light is accounted for at albedo
-// 1: F₀ + (1 − F₀) ρq/(1 − ρ + ρq). The quotient is 0 where both its parts are (ρ = 1 in total darkness).
-// direct: F₀; blocked: 1 − F₀; escape: q; albedo: ρ; all 0..1. tiny: the smallest normal number of the type.
+// E/π over all bounces, notes eq. 10 with F₁ = (1 − F₀)(1 − τ), so that no light is lost at albedo 1:
+// F₀ + (1 − F₀) ρ(1−τ)/(1 − ρ + ρ(1−τ)).
+// direct: F₀; blocked: 1 − F₀; escape: 1 − τ; albedo: ρ; all 0..1, escape above 0 where albedo is 1.
 template <class T, class X>
-T total_factor(const T& direct, const T& blocked, const T& escape, X albedo, X tiny) {
+T total_factor(X direct, X blocked, const T& escape, X albedo) {
   const T out = albedo * escape;
-  const T under_way = X(1) - albedo + out;
-  return direct + blocked * (under_way > T(tiny) ? out / under_way : T(0));
+  return direct + blocked * (out / (X(1) - albedo + out));
 }
 
 // Multi-bounce visibility as a cubic, Jimenez et al., "Practical Real-Time Strategies for Accurate Indirect
@@ -86,5 +87,8 @@ T jimenez_cubic(X visibility, X albedo, const T* p) {
   const T c = p[4] * albedo + p[5];
   return ((a * visibility + b) * visibility + c) * visibility;
 }
+
+// Their constants, in that order.
+inline constexpr std::array<double, 6> kJimenezConstants = {2.0404, -0.3324, -4.7951, 0.6417, 2.7552, 0.6903};
 
 }  // namespace hemibake

@@ -78,6 +78,15 @@ std::vector<BinPosition> usable_bins(const Curves& curves, Abscissa abscissa, We
   return usable;
 }
 
+CurvePoint total_point(const CurveBin& bin, double abscissa, double albedo, Weights weights) {
+  double stddev = 0, power = 1;
+  for (const BounceStatistics& bounce : bin.bounces) {
+    stddev += power * bounce.stddev;
+    power *= albedo;
+  }
+  return {abscissa, total_over_pi(bin, albedo), raw_weight(bin.count, stddev / kPi, weights), albedo};
+}
+
 void scale_to_mean_one(std::vector<CurvePoint>& points) {
   double sum = 0;
   for (const CurvePoint& point : points) sum += point.weight;
@@ -115,15 +124,18 @@ std::vector<CurvePoint> total_points(const Curves& curves, std::span<const doubl
                                      Weights weights) {
   std::vector<CurvePoint> points;
   for (const auto& [bin, ao] : usable_bins(curves, abscissa, weights)) {
-    for (const double albedo : albedos) {
-      double stddev = 0, power = 1;
-      for (const BounceStatistics& bounce : bin->bounces) {
-        stddev += power * bounce.stddev;
-        power *= albedo;
-      }
-      points.push_back(
-          {ao, total_over_pi(*bin, albedo), raw_weight(bin->count, stddev / kPi, weights), albedo});
-    }
+    for (const double albedo : albedos) points.push_back(total_point(*bin, ao, albedo, weights));
+  }
+  scale_to_mean_one(points);
+  return points;
+}
+
+std::vector<CurvePoint> visibility_points(const Curves& curves, std::span<const double> albedos,
+                                          Weights weights) {
+  std::vector<CurvePoint> points;
+  for (const auto& [bin, ao] : usable_bins(curves, Abscissa::center, weights)) {
+    const double visibility = bin->bounces[0].mean / kPi;
+    for (const double albedo : albedos) points.push_back(total_point(*bin, visibility, albedo, weights));
   }
   scale_to_mean_one(points);
   return points;

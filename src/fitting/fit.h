@@ -46,6 +46,10 @@ double total_over_pi(const CurveBin& bin, double albedo);
 std::vector<CurvePoint> total_points(const Curves& curves, std::span<const double> albedos, Abscissa abscissa,
                                      Weights weights);
 
+// The same with the cosine-weighted visible fraction E₀/π of each bin in place of α.
+std::vector<CurvePoint> visibility_points(const Curves& curves, std::span<const double> albedos,
+                                          Weights weights);
+
 struct FitParameter {
   std::string name;
   double value = 0;

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/error.h"
 
@@ -14,6 +15,8 @@ namespace {
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr int kMaxSteps = 1000;
+constexpr size_t kStartsTried =
+    3;  // of those a formula offers, by cost: the least is not always in the right valley
 
 // Ratio of the smallest to the largest singular value of the Jacobian, its columns scaled to length 1, below
 // which the parameters are not determined: its square, the condition of JᵀJ, is then at the rounding of a
@@ -37,33 +40,38 @@ Evaluation evaluate(const ceres::CostFunction& cost, const std::vector<double>& 
   return result;
 }
 
-std::vector<double> best_start(const Formula& formula, const ceres::CostFunction& cost) {
-  double least = std::numeric_limits<double>::infinity();
-  std::vector<double> best;
+// The starts of least cost, best first.
+std::vector<std::vector<double>> best_starts(const Formula& formula, const ceres::CostFunction& cost) {
+  std::vector<std::pair<double, std::vector<double>>> ranked;
   for (const std::vector<double>& start : formula.starts) {
     const Evaluation at = evaluate(cost, start);
     const double sum = at.residuals.squaredNorm();
-    if (sum < least && at.jacobian.allFinite()) {
-      least = sum;
-      best = start;
-    }
+    if (std::isfinite(sum) && at.jacobian.allFinite()) ranked.emplace_back(sum, start);
   }
-  if (best.empty())
+  if (ranked.empty())
     throw CheckError(fmt::format("fit of {}: no start gives finite residuals", formula.model));
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<std::vector<double>> best;
+  for (size_t i = 0; i < std::min(ranked.size(), kStartsTried); ++i) best.push_back(ranked[i].second);
   return best;
 }
 
-std::vector<double> solve(const Formula& formula, ceres::CostFunction* cost, std::vector<double> parameters) {
+struct Minimum {
+  std::vector<double> parameters;
+  double cost = std::numeric_limits<double>::infinity();
+  std::string failure;  // empty: converged
+};
+
+Minimum solve(const Formula& formula, ceres::CostFunction* cost, std::vector<double> parameters) {
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(ownership);
   problem.AddResidualBlock(cost, nullptr, parameters.data());
   for (size_t p = 0; p < parameters.size(); ++p) {
     const ParameterRange& range = formula.parameters[p];
-    if (std::isfinite(range.lower))
-      problem.SetParameterLowerBound(parameters.data(), static_cast<int>(p), range.lower);
-    if (std::isfinite(range.upper))
-      problem.SetParameterUpperBound(parameters.data(), static_cast<int>(p), range.upper);
+    const int index = static_cast<int>(p);
+    if (std::isfinite(range.lower)) problem.SetParameterLowerBound(parameters.data(), index, range.lower);
+    if (std::isfinite(range.upper)) problem.SetParameterUpperBound(parameters.data(), index, range.upper);
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
@@ -74,10 +82,22 @@ std::vector<double> solve(const Formula& formula, ceres::CostFunction* cost, std
   options.parameter_tolerance = 1e-11;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  if (summary.termination_type != ceres::CONVERGENCE) {
-    throw CheckError(fmt::format("fit of {} did not converge: {}", formula.model, summary.message));
+  return {parameters, summary.final_cost,
+          summary.termination_type == ceres::CONVERGENCE ? "" : summary.message};
+}
+
+// The lowest of the minima that the best starts lead to. One that did not converge counts too: lower than all
+// that did, it says that they are not the minimum.
+std::vector<double> lowest_minimum(const Formula& formula, ceres::CostFunction* cost) {
+  Minimum lowest;
+  for (const std::vector<double>& start : best_starts(formula, *cost)) {
+    const Minimum found = solve(formula, cost, start);
+    if (found.cost < lowest.cost || lowest.parameters.empty()) lowest = found;
   }
-  return parameters;
+  if (!lowest.failure.empty()) {
+    throw CheckError(fmt::format("fit of {} did not converge: {}", formula.model, lowest.failure));
+  }
+  return lowest.parameters;
 }
 
 bool on_bound(const ParameterRange& range, double value) {
@@ -114,21 +134,26 @@ Matrix covariance(const Formula& formula, const Evaluation& at, const std::vecto
   return result;
 }
 
-// Burnham & Anderson, "Model Selection and Multimodel Inference", 2002, eq. 7.3: n ln(Σ w r²/n) − Σ ln w, the
-// variance counted as one parameter more.
-// n: observations; the logarithm of a weight counts as its share of one.
-std::optional<double> small_sample_aic(const Evaluation& at, std::span<const CurvePoint> points, double n) {
-  const double share = n / static_cast<double>(points.size());
-  const double k = static_cast<double>(at.jacobian.cols()) + 1;
-  const double sum = at.residuals.squaredNorm();
-  if (n - k - 1 <= 0 || sum <= 0) return std::nullopt;
+// The criterion of weighted points: the likelihood of a point of weight w has the factor √w. points: each
+// observation counts once, however many points it has.
+std::optional<double> weighted_aic(const Evaluation& at, std::span<const CurvePoint> points,
+                                   double observations) {
+  const double count = static_cast<double>(points.size());
   double log_weights = 0;
   for (const CurvePoint& point : points) log_weights += std::log(point.weight);
-  return n * std::log(sum / static_cast<double>(points.size())) - share * log_weights + 2 * k +
-         2 * k * (k + 1) / (n - k - 1);
+  std::optional<double> aic = small_sample_aic(at.residuals.squaredNorm() / count, observations,
+                                               static_cast<int>(at.jacobian.cols()));
+  if (aic) *aic -= log_weights * observations / count;
+  return aic;
 }
 
 }  // namespace
+
+std::optional<double> small_sample_aic(double mean_square, double observations, int parameters) {
+  const double k = parameters + 1;
+  if (observations - k - 1 <= 0 || mean_square <= 0) return std::nullopt;
+  return observations * std::log(mean_square) + 2 * k + 2 * k * (k + 1) / (observations - k - 1);
+}
 
 Fit minimize(const Formula& formula, std::span<const CurvePoint> points,
              std::unique_ptr<ceres::CostFunction> cost) {
@@ -138,7 +163,7 @@ Fit minimize(const Formula& formula, std::span<const CurvePoint> points,
     throw InputError(fmt::format("{} usable bins, expected at least {} for the {} parameters of {}",
                                  observations, count + 1, count, formula.model));
   }
-  const std::vector<double> found = solve(formula, cost.get(), best_start(formula, *cost));
+  const std::vector<double> found = lowest_minimum(formula, cost.get());
   const Evaluation at = evaluate(*cost, found);
   std::vector<Eigen::Index> free;
   for (size_t p = 0; p < count; ++p) {
@@ -162,7 +187,7 @@ Fit minimize(const Formula& formula, std::span<const CurvePoint> points,
   }
   fit.rms = std::sqrt(sum / static_cast<double>(points.size()));
   fit.points = static_cast<int>(points.size());
-  fit.aicc = small_sample_aic(at, points, static_cast<double>(observations));
+  fit.aicc = weighted_aic(at, points, static_cast<double>(observations));
   return fit;
 }
 

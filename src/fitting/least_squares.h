@@ -26,7 +26,7 @@ struct Formula {
   std::string model;  // as in FIT.json
   std::string text;   // the formula for a human
   std::vector<ParameterRange> parameters;
-  std::vector<std::vector<double>> starts;  // parameter sets to begin from; the one of least cost is taken
+  std::vector<std::vector<double>> starts;  // parameter sets to begin from; those of least cost are taken
   int points_per_observation = 1;           // points that share one error (fit.h, "observation")
 };
 
@@ -63,6 +63,11 @@ Fit fit_formula(const Formula& formula, std::span<const CurvePoint> points, Valu
   return minimize(formula, points,
                   std::make_unique<Cost>(new Residuals(points, value), static_cast<int>(points.size())));
 }
+
+// Akaike's criterion for least squares: n ln(mean square) + 2K + 2K(K+1)/(n−K−1), K = parameters + 1 for the
+// variance (Burnham & Anderson, "Model Selection and Multimodel Inference", 2002, eq. 7.3). None where n is
+// too small.
+std::optional<double> small_sample_aic(double mean_square, double observations, int parameters);
 
 // The factor s that minimises Σ w (s·shape(α) − value)²; 0 where the shape vanishes at every point.
 template <class Shape>

@@ -32,12 +32,33 @@ std::vector<NamedFit> fit_bounded(const Curves& curves, Abscissa abscissa, Weigh
                                           static_cast<int>(albedos.size()), direct)}};
 }
 
+std::vector<NamedFit> fit_bounces(const Curves& curves, Abscissa abscissa, Weights weights) {
+  expect_bounces(curves, 2, "bounces");
+  std::vector<NamedFit> fits;
+  for (int b = 1; b < curves.bounce_count; ++b) {
+    fits.push_back(
+        {fmt::format("bounce_{:02}", b), fit_bounce(curve_points(curves, b, abscissa, weights), b)});
+  }
+  return fits;
+}
+
+std::vector<NamedFit> fit_jimenez_both(const Curves& curves, Abscissa abscissa, Weights weights) {
+  expect_bounces(curves, 2, "jimenez");
+  const std::vector<double> albedos = fit_albedos();
+  const int count = static_cast<int>(albedos.size());
+  return {{"jimenez", fit_jimenez(visibility_points(curves, albedos, weights), count)},
+          {"jimenez_ao", fit_jimenez(total_points(curves, albedos, abscissa, weights), count)}};
+}
+
 }  // namespace
 
 const std::vector<FitModel>& fit_models() {
   static const std::vector<FitModel> models = {
       {"published", "F0 and F1 of the notes of 2018", fit_published},
       {"bounded", "F0 and tau that stay within 0..1", fit_bounded},
+      {"bounces", "each bounce on its own", fit_bounces},
+      {"jimenez", "their cubic over the cosine-weighted and over the uniform visible fraction",
+       fit_jimenez_both},
   };
   return models;
 }

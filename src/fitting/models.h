@@ -14,7 +14,9 @@ struct FitModel {
   std::vector<NamedFit> (*fit)(const Curves& curves, Abscissa abscissa, Weights weights);
 };
 
-// published: F0 (k, e) and F1 (A, B). bounded: bounded_F0 (k0, k1) and bounded_tau (n).
+// published: F0 (k, e) and F1 (A, B). bounded: bounded_F0 (k0, k1) and bounded_tau (q, d).
+// bounces: bounce_01, bounce_02, … (A, B, C). jimenez: jimenez (V = E₀/π) and jimenez_ao (V = α, their unit
+// error).
 const std::vector<FitModel>& fit_models();
 
 // All fits of the model called `name`. Throws InputError where the name is unknown or the curves do not

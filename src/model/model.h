@@ -11,18 +11,18 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include "curves/closed_forms.h"
 
 namespace hemibake {
 
-// All of 0..1: F₀, F₁ and the total, which rises with α and ρ; τ too, and below 1 for α > 0. F₀ + F₁/(1 − τ)
-// = 1.
+// F₀, F₁ and the total lie in 0..1 and τ in [0, 1); F₀ and the total rise with α, the total with ρ too; F₀ +
+// F₁/(1 − τ) is 1.
 struct BoundedModel {
-  double k0 = 0;  // 0..1
-  double k1 = 0;  // 0..1
-  double n = 1;   // above 0
+  double k0 = 0.5;  // −1..1: where the visible sky stands, −1 along the horizon, 1 overhead. In the dark…
+  double k1 = 1;    // −1..1: …and in the open
+  double q = 0.5;  // (0, 1]: share of the light under way that a bounce sends out to the sky, in the open
+  double d = 0.8;  // [0, 1): how much less that is in the dark
 
   template <class T>
   T direct(T ao) const {
@@ -34,7 +34,7 @@ struct BoundedModel {
   }
   template <class T>
   T escape(T ao) const {
-    return escape_share(direct(ao), static_cast<T>(n));
+    return bounded_escape_share(direct(ao), blocked(ao), static_cast<T>(q), static_cast<T>(d));
   }
   template <class T>
   T first_bounce(T ao) const {
@@ -46,12 +46,13 @@ struct BoundedModel {
   }
   template <class T>
   T total(T ao, T albedo) const {
-    return total_factor(direct(ao), blocked(ao), escape(ao), albedo, std::numeric_limits<T>::min());
+    return std::min(total_factor(direct(ao), blocked(ao), escape(ao), albedo), T(1));
   }
 };
 
-// The model of the notes of 2018 as it stands, eq. 7, 9, 10, 11. F₀ exceeds 1 for α above 0.949253 with the
-// published constants; from α = 0.8 on τ leaves 0..1, and the total has poles near there at every ρ below 1.
+// The model of the notes of 2018 as it stands, eq. 7, 9, 10, 11. With the published constants τ is below 0
+// from α = 0.7633 on, F₀ exceeds 1 from 0.949253 on, where τ has a pole, and the total has one above that at
+// every ρ below 1.
 struct PublishedModel {
   double k = 0.5;
   double e = 0.75;
@@ -77,7 +78,7 @@ struct PublishedModel {
 };
 
 // The same with F₀ cut off at 1 and τ at 0 and 1: within 0..1 everywhere, equal to the published model
-// wherever that one is sound. What `export` writes for published constants.
+// wherever that one is sound. What `export --model published` writes.
 struct GuardedModel {
   PublishedModel published;
 
@@ -88,8 +89,8 @@ struct GuardedModel {
   template <class T>
   T escape(T ao) const {
     const T blocked = 1 - direct(ao);
-    const T first = std::max(published.first_bounce(ao), T(0));
-    return first < blocked ? first / blocked : T(1);
+    const T first = published.first_bounce(ao);
+    return first < blocked ? std::max(first / blocked, kSmallestEscape<T>) : T(1);
   }
   template <class T>
   T first_bounce(T ao) const {
@@ -102,15 +103,19 @@ struct GuardedModel {
   template <class T>
   T total(T ao, T albedo) const {
     const T from_sky = direct(ao);
-    return total_factor(from_sky, 1 - from_sky, escape(ao), albedo, std::numeric_limits<T>::min());
+    return std::min(total_factor(from_sky, 1 - from_sky, escape(ao), albedo), T(1));
   }
+
+  // Of 1 − τ, which is 0 at α = 0: keeps the total defined at ρ = 1.
+  template <class T>
+  static constexpr T kSmallestEscape = T(1e-30);
 };
 
 // Jimenez et al. 2016 (closed_forms.h, jimenez_cubic), by default with their constants. No F₁ or τ: all
 // bounces at once. visibility: E₀/π, the cosine-weighted visible fraction; with α instead it is wrong by the
 // difference of the two.
 struct JimenezModel {
-  std::array<double, 6> parameters = {2.0404, -0.3324, -4.7951, 0.6417, 2.7552, 0.6903};
+  std::array<double, 6> parameters = kJimenezConstants;
 
   template <class T>
   T total(T visibility, T albedo) const {

@@ -74,21 +74,21 @@ $function float unit_range(float x) {
 )";
 
 constexpr std::string_view kBounded = R"(
-// F0: the light straight from the sky. Between ao and ao * (2 - ao).
+// F0: the light straight from the sky. Between ao * ao and ao * (2 - ao).
 $function float direct_irradiance(float ao) {
   float a = unit_range(ao);
-  return a * (#1 + (#1 - a) * ($k0 + $dk * a * a));
+  return a * (#1 + (#1 - a) * ($dark + $rise * a * a));
 }
 
 // 1 - F0, without cancellation near ao = 1.
 $function float blocked_irradiance(float ao) {
   float a = unit_range(ao);
-  return (#1 - a) * (#1 - a * ($k0 + $dk * a * a));
+  return (#1 - a) * (#1 - a * ($dark + $rise * a * a));
 }
 
 // 1 - tau: the share of the light between the walls that each bounce sends out to the sky.
 $function float escape_share(float ao) {
-  return $pow(direct_irradiance(ao), $n);
+  return $q * (#1 - $d * blocked_irradiance(ao) / (#1 + #3 * direct_irradiance(ao)));
 }
 )";
 
@@ -104,13 +104,13 @@ $function float blocked_irradiance(float ao) {
   return #1 - direct_irradiance(ao);
 }
 
-// 1 - tau = F1 / (1 - F0), cut at 1 where the formulas' F1 exceeds 1 - F0 (from ao = 0.8 on).
+// 1 - tau = F1 / (1 - F0), cut at 1 where the formulas' F1 exceeds 1 - F0 (from about ao = 0.76 on), and just above 0.
 $function float escape_share(float ao) {
   float a = unit_range(ao);
   float b = #1 - a;
   float first = $a * a * b * $sqrt(b) * $exp(-$b * $sqrt($sqrt(a)));
   float blocked = blocked_irradiance(ao);
-  return first < blocked ? first / blocked : #1;
+  return first < blocked ? $max(first / blocked, #tiny) : #1;
 }
 )";
 
@@ -129,8 +129,7 @@ $function float bounce_ratio(float ao) {
 $function float all_bounces(float direct, float blocked, float escape, float albedo) {
   float r = unit_range(albedo);
   float sent_out = r * escape;
-  float under_way = #1 - r + sent_out;
-  return $min(direct + blocked * (under_way > #0 ? sent_out / under_way : #0), #1);
+  return $min(direct + blocked * (sent_out / (#1 - r + sent_out)), #1);
 }
 
 // All bounces of light, for each channel of the albedo.
@@ -144,6 +143,15 @@ $vector_function$vector multi_bounce_irradiance(float ao, $vector_argument albed
       all_bounces(direct, blocked, escape, albedo.z)$vector_close;
 }
 )";
+
+// One comment, whatever the line holds: names of files and commands may bring line ends, and a backslash at
+// the end would join the next line to it.
+std::string comment_line(std::string line) {
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '\\') c = '/';
+  }
+  return fmt::format("// {}\n", line);
+}
 
 using Constants = std::vector<std::pair<std::string_view, double>>;
 
@@ -167,9 +175,10 @@ std::string assemble(std::string_view model, const Constants& constants, Languag
   for (const auto& [name, value] : constants) replace_all(body, name, literal(value, s));
   replace_all(body, "#0", literal(0, s));
   replace_all(body, "#1", literal(1, s));
+  replace_all(body, "#3", literal(3, s));
 
   std::string head;
-  for (const std::string& line : origin) head += fmt::format("// {}\n", line);
+  for (const std::string& line : origin) head += comment_line(line);
   return head + std::string(kUsage) + std::string(s.open) + body.substr(s.open.empty() ? 0 : 1) +
          std::string(s.close);
 }
@@ -178,14 +187,16 @@ std::string assemble(std::string_view model, const Constants& constants, Languag
 
 std::string shader_text(const BoundedModel& model, Language language,
                         const std::vector<std::string>& origin) {
-  const Constants constants = {{"$k0", model.k0}, {"$dk", model.k1 - model.k0}, {"$n", model.n}};
+  const Constants constants = {
+      {"$dark", model.k0}, {"$rise", model.k1 - model.k0}, {"$q", model.q}, {"$d", model.d}};
   return assemble(kBounded, constants, language, origin);
 }
 
 std::string shader_text(const GuardedModel& model, Language language,
                         const std::vector<std::string>& origin) {
   const PublishedModel& p = model.published;
-  const Constants constants = {{"$k", p.k}, {"$e", p.e}, {"$a", p.a}, {"$b", p.b}};
+  const Constants constants = {
+      {"$k", p.k}, {"$e", p.e}, {"$a", p.a}, {"$b", p.b}, {"#tiny", GuardedModel::kSmallestEscape<double>}};
   return assemble(kGuarded, constants, language, origin);
 }
 

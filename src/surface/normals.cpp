@@ -72,4 +72,11 @@ Grid<glm::vec3> decode_normal_map(const Grid<glm::vec3>& encoded, NormalY conven
   return normals;
 }
 
+Grid<float> normal_map_lengths(const Grid<glm::vec3>& encoded) {
+  Grid<float> lengths(encoded.width, encoded.height);
+  for (size_t i = 0; i < encoded.size(); ++i)
+    lengths[i] = static_cast<float>(glm::length(2.0 * glm::dvec3(encoded[i]) - 1.0));
+  return lengths;
+}
+
 }  // namespace hemibake

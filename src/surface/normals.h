@@ -24,4 +24,7 @@ Grid<glm::vec3> angle_weighted_normals(const Surface& surface);
 // naming the texel where a value is not finite, the length is below 10⁻³ or the normal does not point up.
 Grid<glm::vec3> decode_normal_map(const Grid<glm::vec3>& encoded, NormalY convention);
 
+// |2·value − 1| of each texel: what decode_normal_map divides by.
+Grid<float> normal_map_lengths(const Grid<glm::vec3>& encoded);
+
 }  // namespace hemibake

@@ -1,0 +1,239 @@
+#include "fitting/candidates.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/constants.h"
+#include "curves/closed_forms.h"
+#include "fitting/bounded.h"
+#include "fitting/least_squares.h"
+#include "fitting/published.h"
+
+namespace hemibake {
+namespace {
+
+constexpr int kAlbedoSteps = 10;
+
+std::vector<CurvePoint> points_of(const Curves& curves, int bounce) {
+  return curve_points(curves, bounce, Abscissa::center, Weights::none);
+}
+
+std::vector<CurvePoint> totals_of(const Curves& curves) {
+  return total_points(curves, fit_albedos(), Abscissa::center, Weights::none);
+}
+
+// F₀ and 1 − F₀ of one α.
+struct Direct {
+  double ao = 0, factor = 0, blocked = 0;
+};
+
+// The formulas of F₀ by how much of k0, k1 is free.
+struct DirectModel {
+  double k0 = 0, k1 = 0;
+
+  Direct operator()(double ao) const {
+    return {ao, bounded_direct_factor(ao, k0, k1), bounded_blocked_factor(ao, k0, k1)};
+  }
+};
+
+// s = k everywhere: α(1 + k(1−α)).
+DirectModel fit_line(const Curves& curves) {
+  const Formula formula{"line F0", "", {{"k", -1, 1}}, {{0.5}}};
+  const Fit fit = fit_formula<1>(formula, points_of(curves, 0), [](const auto* p, const CurvePoint& point) {
+    return bounded_direct_factor(point.ao, p[0], p[0]);
+  });
+  return {parameter_value(fit, "k"), parameter_value(fit, "k")};
+}
+
+// k1 = 1: nearly open ground sees its sky overhead.
+DirectModel fit_overhead(const Curves& curves) {
+  const Formula formula{"overhead F0", "", {{"k0", -1, 1}}, {{0.5}}};
+  const Fit fit = fit_formula<1>(formula, points_of(curves, 0), [](const auto* p, const CurvePoint& point) {
+    using T = std::decay_t<decltype(p[0])>;
+    return bounded_direct_factor(point.ao, p[0], T(1));
+  });
+  return {parameter_value(fit, "k0"), 1};
+}
+
+DirectModel fit_both(const Curves& curves) {
+  const Fit fit = fit_bounded_direct(points_of(curves, 0));
+  return {parameter_value(fit, "k0"), parameter_value(fit, "k1")};
+}
+
+// The whole model of a fitted F₀ and a formula of 1 − τ: escape(p, Direct) with parameters p of the ranges
+// given.
+template <int N, class Escape>
+Prediction fit_escape(const Curves& curves, DirectModel direct, const std::vector<ParameterRange>& parameters,
+                      const std::vector<std::vector<double>>& starts, Escape escape) {
+  const std::vector<CurvePoint> points = totals_of(curves);
+  const Formula formula{"candidate", "", parameters, starts, static_cast<int>(fit_albedos().size())};
+  const Fit fit = fit_formula<N>(formula, points, [=](const auto* p, const CurvePoint& point) {
+    const Direct at = direct(point.ao);
+    return total_factor(at.factor, at.blocked, escape(p, at), point.albedo);
+  });
+  std::array<double, N> found;
+  for (size_t i = 0; i < N; ++i) found[i] = fit.parameters[i].value;
+  return [=](double ao, double, double albedo) {
+    const Direct at = direct(ao);
+    return total_factor(at.factor, at.blocked, escape(found.data(), at), albedo);
+  };
+}
+
+Prediction with_power(const Curves& curves, DirectModel direct) {
+  return fit_escape<1>(curves, direct, {{"n", 0.02, 5}}, {{0.3}, {1.0}}, [](const auto* p, const Direct& at) {
+    using std::pow;
+    return pow(at.factor, p[0]);
+  });
+}
+
+Prediction with_scaled_power(const Curves& curves, DirectModel direct) {
+  return fit_escape<2>(curves, direct, {{"q", 0.001, 1}, {"n", 0.02, 5}}, {{0.5, 0.3}, {0.8, 1.0}},
+                       [](const auto* p, const Direct& at) {
+                         using std::pow;
+                         return p[0] * pow(at.factor, p[1]);
+                       });
+}
+
+Prediction with_straight(const Curves& curves, DirectModel direct) {
+  return fit_escape<2>(curves, direct, {{"q", 0.001, 1}, {"d", 0, 0.999}}, {{0.5, 0.5}},
+                       [](const auto* p, const Direct& at) { return p[0] * (1.0 - p[1] * (1 - at.ao)); });
+}
+
+Prediction with_square(const Curves& curves, DirectModel direct) {
+  return fit_escape<2>(
+      curves, direct, {{"q", 0.001, 1}, {"d", 0, 0.999}}, {{0.5, 0.5}},
+      [](const auto* p, const Direct& at) { return p[0] * (1.0 - p[1] * (at.blocked * at.blocked)); });
+}
+
+Prediction with_quotient(const Curves& curves, DirectModel direct) {
+  return fit_escape<2>(curves, direct, {{"q", 0.001, 1}, {"d", 0, 0.999}}, {{0.5, 0.5}},
+                       [](const auto* p, const Direct& at) {
+                         return bounded_escape_share(at.factor, at.blocked, p[0], p[1]);
+                       });
+}
+
+struct PublishedConstants {
+  double k, e, a, b;
+
+  explicit PublishedConstants(const Curves& curves) {
+    const Fit direct = fit_direct(points_of(curves, 0));
+    const Fit first = fit_first_bounce(points_of(curves, 1));
+    k = parameter_value(direct, "k");
+    e = parameter_value(direct, "e");
+    a = parameter_value(first, "A");
+    b = parameter_value(first, "B");
+  }
+};
+
+Prediction published(const Curves& curves) {
+  return [c = PublishedConstants(curves)](double ao, double, double albedo) {
+    const double direct = direct_factor(ao, c.k, c.e);
+    const double first = first_bounce_factor(ao, c.a, c.b);
+    return direct + albedo * first / (1 - albedo * (1 - first / (1 - direct)));
+  };
+}
+
+Prediction guarded(const Curves& curves) {
+  return [c = PublishedConstants(curves)](double ao, double, double albedo) {
+    const double direct = std::min(direct_factor(ao, c.k, c.e), 1.0);
+    const double blocked = 1 - direct;
+    const double first = first_bounce_factor(ao, c.a, c.b);
+    return total_factor(direct, blocked, first < blocked ? std::max(first / blocked, 1e-30) : 1.0, albedo);
+  };
+}
+
+Prediction jimenez_of(const std::array<double, 6>& p, bool over_ao) {
+  return [p, over_ao](double ao, double visibility, double albedo) {
+    const double v = over_ao ? ao : visibility;
+    return std::max(v, jimenez_cubic(v, albedo, p.data()));
+  };
+}
+
+Prediction jimenez_refit(const Curves& curves, bool over_ao) {
+  const std::vector<double> albedos = fit_albedos();
+  const Fit fit = fit_jimenez(over_ao ? totals_of(curves) : visibility_points(curves, albedos, Weights::none),
+                              static_cast<int>(albedos.size()));
+  std::array<double, 6> p;
+  for (size_t i = 0; i < 6; ++i) p[i] = fit.parameters[i].value;
+  return jimenez_of(p, over_ao);
+}
+
+double populated_bins(const Curves& curves) {
+  return static_cast<double>(std::count_if(curves.bins.begin(), curves.bins.end(),
+                                           [](const CurveBin& bin) { return bin.count > 0; }));
+}
+
+// The bins of all sets but one, side by side.
+Curves all_but(const std::vector<Curves>& sets, size_t left_out) {
+  Curves pooled;
+  for (size_t i = 0; i < sets.size(); ++i) {
+    if (i != left_out) pooled.bins.insert(pooled.bins.end(), sets[i].bins.begin(), sets[i].bins.end());
+  }
+  return pooled;
+}
+
+}  // namespace
+
+const std::vector<Candidate>& candidates() {
+  static const std::vector<Candidate> all = {
+      {"published", "k, e; A, B", 4, published},
+      {"published, cut", "the same, F0 <= 1 and 0 <= tau <= 1", 4, guarded},
+      {"line, power", "s = k; 1-tau = F0^n", 2,
+       [](const Curves& curves) { return with_power(curves, fit_line(curves)); }},
+      {"bounded, power", "s = k0..k1; 1-tau = F0^n", 3,
+       [](const Curves& curves) { return with_power(curves, fit_both(curves)); }},
+      {"bounded, q power", "s = k0..k1; 1-tau = q F0^n", 4,
+       [](const Curves& curves) { return with_scaled_power(curves, fit_both(curves)); }},
+      {"bounded, straight", "s = k0..k1; 1-tau = q(1 - d(1-a))", 4,
+       [](const Curves& curves) { return with_straight(curves, fit_both(curves)); }},
+      {"bounded, square", "s = k0..k1; 1-tau = q(1 - d(1-F0)^2)", 4,
+       [](const Curves& curves) { return with_square(curves, fit_both(curves)); }},
+      {"overhead", "s = k0..1; 1-tau = q(1 - d(1-F0)/(1+3F0))", 3,
+       [](const Curves& curves) { return with_quotient(curves, fit_overhead(curves)); }},
+      {"bounded", "s = k0..k1; 1-tau = q(1 - d(1-F0)/(1+3F0))", 4,
+       [](const Curves& curves) { return with_quotient(curves, fit_both(curves)); }},
+      {"Jimenez 2016", "their constants, V = E0/pi", 0,
+       [](const Curves&) { return jimenez_of(kJimenezConstants, false); }},
+      {"Jimenez 2016, ao", "their constants, V = a", 0,
+       [](const Curves&) { return jimenez_of(kJimenezConstants, true); }},
+      {"Jimenez, refit", "V = E0/pi", 6, [](const Curves& curves) { return jimenez_refit(curves, false); }},
+      {"Jimenez, refit, ao", "V = a", 6, [](const Curves& curves) { return jimenez_refit(curves, true); }},
+  };
+  return all;
+}
+
+Score score_prediction(const Prediction& prediction, const Curves& curves) {
+  Score score;
+  double sum = 0;
+  int count = 0;
+  for (const CurveBin& bin : curves.bins) {
+    if (bin.count == 0) continue;
+    for (int r = 0; r <= kAlbedoSteps; ++r) {
+      const double albedo = static_cast<double>(r) / kAlbedoSteps;
+      const double predicted = prediction(bin_center(bin), bin.bounces[0].mean / kPi, albedo);
+      const double error = predicted - total_over_pi(bin, albedo);
+      sum += error * error;
+      score.max_error = std::max(score.max_error, std::abs(error));
+      ++count;
+    }
+  }
+  score.rms = count == 0 ? 0 : std::sqrt(sum / count);
+  return score;
+}
+
+Comparison compare_candidate(const Candidate& candidate, const std::vector<Curves>& sets) {
+  Comparison comparison;
+  comparison.aicc = 0;
+  for (size_t i = 0; i < sets.size(); ++i) {
+    comparison.own.push_back(score_prediction(candidate.fit(sets[i]), sets[i]));
+    const double mean_square = comparison.own[i].rms * comparison.own[i].rms;
+    const auto aicc = small_sample_aic(mean_square, populated_bins(sets[i]), candidate.parameters);
+    comparison.aicc = comparison.aicc && aicc ? std::optional(*comparison.aicc + *aicc) : std::nullopt;
+    if (sets.size() > 1) {
+      comparison.others.push_back(score_prediction(candidate.fit(all_but(sets, i)), sets[i]));
+    }
+  }
+  return comparison;
+}
+
+}  // namespace hemibake
