@@ -1,42 +1,68 @@
 #include "cli/run_hemibake.h"
 
-#include <stdlib.h>
+#include <fmt/format.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
-#include <stdexcept>
 
 namespace hemibake {
-namespace {
 
-std::string contents(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+namespace fs = std::filesystem;
 
-}  // namespace
-
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "hemibake_test_XXXXXX").string();
-  if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder");
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+CommandResult run_shell(const std::string& line) {
+  const TemporaryFolder folder;
+  const fs::path out = folder / "out", err = folder / "err";
+  const int status =
+      std::system(fmt::format("( {} ) >'{}' 2>'{}' </dev/null", line, out.string(), err.string()).c_str());
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return {code, read_bytes(out), read_bytes(err)};
 }
 
 CommandResult run_hemibake(const std::string& arguments) {
-  const TemporaryFolder folder;
-  const auto out = folder / "out", err = folder / "err";
-  const std::string line =
-      "'" HEMIBAKE_BINARY "' " + arguments + " >'" + out.string() + "' 2>'" + err.string() + "' </dev/null";
-  const int status = std::system(line.c_str());
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return {code, contents(out), contents(err)};
+  return run_shell("'" HEMIBAKE_BINARY "' " + arguments);
+}
+
+CommandResult CliTest::run(const std::string& arguments, const std::string& before) const {
+  // `exec`: a signal ends hemibake, not a shell around it.
+  return run_shell(
+      fmt::format("cd '{}' && {} exec '{}' {}", folder_.path().string(), before, HEMIBAKE_BINARY, arguments));
+}
+
+CommandResult CliTest::run_well(const std::string& arguments) const {
+  CommandResult result = run(arguments);
+  EXPECT_EQ(result.exit_code, 0) << arguments << "\n" << result.standard_error;
+  return result;
+}
+
+nlohmann::json CliTest::run_json(const std::string& arguments) const {
+  const CommandResult result = run_well(arguments + " --json");
+  nlohmann::json json = nlohmann::json::parse(result.standard_output, nullptr, false);
+  EXPECT_TRUE(json.is_object()) << arguments << "\n" << result.standard_output;
+  return json;
+}
+
+void CliTest::expect_refusal(const std::string& arguments, const testing::Matcher<std::string>& line,
+                             const std::string& before) const {
+  const auto files = listing();
+  const CommandResult result = run(arguments, before);
+  const std::string where = "hemibake " + arguments;
+  EXPECT_EQ(result.exit_code, 2) << where;
+  EXPECT_EQ(result.standard_output, "") << where;
+  const std::string& error = result.standard_error;
+  const std::string start = "hemibake: ";
+  ASSERT_TRUE(error.starts_with(start) && error.find('\n') == error.size() - 1) << where << "\n" << error;
+  EXPECT_THAT(error.substr(start.size(), error.size() - start.size() - 1), line) << where;
+  EXPECT_EQ(listing(), files) << where;
+}
+
+std::map<std::string, std::string> CliTest::listing() const {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_.path()))
+    files[entry.path().string()] = entry.is_regular_file()
+                                       ? fmt::format("{} bytes, {}", entry.file_size(),
+                                                     entry.last_write_time().time_since_epoch().count())
+                                       : "";
+  return files;
 }
 
 }  // namespace hemibake

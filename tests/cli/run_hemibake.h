@@ -1,25 +1,17 @@
 // Runs the real binary, for tests of the command line.
 #pragma once
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 
+#include "io/io_testing.h"
+
 namespace hemibake {
-
-// A folder of its own that goes with the object.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 struct CommandResult {
   int exit_code;
@@ -27,7 +19,31 @@ struct CommandResult {
   std::string standard_error;
 };
 
-// arguments: as typed in a shell after the program's name. A signal counts as exit code 128 + its number.
+// line: for /bin/sh. A signal counts as exit code 128 + its number.
+CommandResult run_shell(const std::string& line);
+
+// arguments: as typed in a shell after the program's name.
 CommandResult run_hemibake(const std::string& arguments);
+
+// A test with a folder of its own in which hemibake runs.
+class CliTest : public testing::Test {
+ protected:
+  // before: what the shell does first ("ulimit -f 8; ").
+  CommandResult run(const std::string& arguments, const std::string& before = "") const;
+  // As run, for what has to succeed.
+  CommandResult run_well(const std::string& arguments) const;
+  // The object that run_well prints with --json.
+  nlohmann::json run_json(const std::string& arguments) const;
+
+  // Expects exit code 2, nothing on standard output, and on standard error the one line "hemibake: LINE" with
+  // LINE as `line` says; and that every file in the folder is as it was and no other is there.
+  void expect_refusal(const std::string& arguments, const testing::Matcher<std::string>& line,
+                      const std::string& before = "") const;
+
+  // Every file below the folder with its size and time, hidden ones too.
+  std::map<std::string, std::string> listing() const;
+
+  TemporaryFolder folder_;
+};
 
 }  // namespace hemibake
