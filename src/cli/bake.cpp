@@ -8,9 +8,10 @@
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "cli/replay.h"
+#include "cli/validators.h"
 #include "core/error.h"
 #include "io/bake_file.h"
-#include "io/output_file.h"
+#include "surface/surface.h"
 
 namespace hemibake {
 namespace {
@@ -28,8 +29,9 @@ int run_bake(const CLI::App& app, BakeCommandOptions& options) {
   settle_bake_options(app, options.bake);
   const bool writes = options.texel.empty() && !options.dry_run;
   if (writes && options.output.empty()) throw InputError("--output: missing, expected -o BAKE.exr");
-  if (writes) check_output_path(options.output, {".exr"});
-  if (writes && !options.bake.links.empty()) check_output_path(options.bake.links, {".h5", ".hdf5"});
+  if (writes) check_bake_output(options.bake, options.output, {".exr"});
+  if (writes && !options.bake.links.empty())
+    check_bake_output(options.bake, options.bake.links, {".h5", ".hdf5"});
 
   BakeJob job;
   prepare_bake(options.bake, !writes, job);
@@ -55,9 +57,16 @@ int run_bake(const CLI::App& app, BakeCommandOptions& options) {
 CommandBody setup_bake(CLI::App& app) {
   auto options = std::make_shared<BakeCommandOptions>();
   add_bake_options(app, options->bake);
-  app.add_option("-o,--output", options->output, "the bake to write, EXR")->option_text("BAKE.exr")->group("Output");
-  app.add_option("--texel", options->texel, "print the rays, hits and links of one texel instead, counted from 0")
-      ->delimiter(',')->expected(2)->option_text("X,Y")->group("Output");
+  app.add_option("-o,--output", options->output, "the bake to write, EXR")
+      ->option_text("BAKE.exr")
+      ->group("Output");
+  app.add_option("--texel", options->texel,
+                 "print the rays, hits and links of one texel instead, counted from 0")
+      ->check(whole_number_in(0, kMaxTexels - 1))
+      ->delimiter(',')
+      ->expected(2)
+      ->option_text("X,Y")
+      ->group("Output");
   app.add_flag("--dry-run", options->dry_run, "say memory and work, bake nothing")->group("Output");
   add_common_options(app, options->common);
   return [&app, options] { return run_bake(app, *options); };

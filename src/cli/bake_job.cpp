@@ -31,11 +31,12 @@ PlanOptions plan_options(const BakeJob& job) {
 }
 
 void refuse_beyond_memory(const BakeJob& job, const BakePlan& plan) {
-  const double allowed = job.options.memory_gib ? *job.options.memory_gib * kGib : static_cast<double>(machine_memory_bytes());
+  const double allowed =
+      job.options.memory_gib ? *job.options.memory_gib * kGib : static_cast<double>(machine_memory_bytes());
   if (static_cast<double>(plan.memory_bytes()) <= allowed) return;
-  throw InputError(fmt::format("{}: the bake needs {:.2f} GiB, expected at most the {:.2f} GiB of {}", job.options.map.string(),
-                               static_cast<double>(plan.memory_bytes()) / kGib, allowed / kGib,
-                               job.options.memory_gib ? "--memory" : "this machine"));
+  throw InputError(fmt::format("{}: the bake needs {:.3g} GiB, expected at most the {:.3g} GiB of {}",
+                               job.options.map.string(), static_cast<double>(plan.memory_bytes()) / kGib,
+                               allowed / kGib, job.options.memory_gib ? "--memory" : "this machine"));
 }
 
 // Everything that decides the bytes of the result.
@@ -92,11 +93,13 @@ void record_bounces(const Bounces& bounces, Provenance& p) {
 std::string name_texels(const std::vector<uint32_t>& texels, int width) {
   std::string names;
   for (size_t i = 0; i < std::min(texels.size(), kTexelsNamed); ++i)
-    names += fmt::format(" {},{}", texels[i] % static_cast<uint32_t>(width), texels[i] / static_cast<uint32_t>(width));
+    names += fmt::format(" {},{}", texels[i] % static_cast<uint32_t>(width),
+                         texels[i] / static_cast<uint32_t>(width));
   return names + (texels.size() > kTexelsNamed ? " …" : "");
 }
 
-std::vector<std::string> warnings_of(const BakeOptions& options, const Visibility& seen, const Bounces& bounces) {
+std::vector<std::string> warnings_of(const BakeOptions& options, const Visibility& seen,
+                                     const Bounces& bounces) {
   std::vector<std::string> warnings;
   const int width = seen.direct_over_pi.width;
   if (!bounces.texels_short.empty())
@@ -104,15 +107,17 @@ std::vector<std::string> warnings_of(const BakeOptions& options, const Visibilit
                                    bounces.texels_short.size(), *options.converge, bounces.bounces_made,
                                    bounces.worst_residual, name_texels(bounces.texels_short, width)));
   if (!bounces.texels_closed.empty())
-    warnings.push_back(fmt::format("{} texels see only themselves and never fill:{}", bounces.texels_closed.size(),
-                                   name_texels(bounces.texels_closed, width)));
+    warnings.push_back(fmt::format("{} texels see only themselves and never fill:{}",
+                                   bounces.texels_closed.size(), name_texels(bounces.texels_closed, width)));
   if (seen.counts.cut_short > 0)
-    warnings.push_back(fmt::format("{} of {} rays were followed to the far limit below the highest texel and taken for sky",
-                                   seen.counts.cut_short, seen.counts.rays));
+    warnings.push_back(
+        fmt::format("{} of {} rays were followed to the far limit below the highest texel and taken for sky",
+                    seen.counts.cut_short, seen.counts.rays));
   return warnings;
 }
 
-void store_planes(const BakeOptions& options, const Surface& surface, Visibility& seen, Bounces& bounces, Bake& bake) {
+void store_planes(const BakeOptions& options, const Surface& surface, Visibility& seen, Bounces& bounces,
+                  Bake& bake) {
   bake.width = surface.width();
   bake.height = surface.height();
   if (options.wants("ao")) bake.visible_fraction = std::move(seen.visible_fraction);
@@ -127,7 +132,8 @@ void store_planes(const BakeOptions& options, const Surface& surface, Visibility
 
 std::vector<float> irradiance_of(const std::vector<float>& over_pi) {
   std::vector<float> irradiance(over_pi.size());
-  for (size_t i = 0; i < over_pi.size(); ++i) irradiance[i] = static_cast<float>(kPi * static_cast<double>(over_pi[i]));
+  for (size_t i = 0; i < over_pi.size(); ++i)
+    irradiance[i] = static_cast<float>(kPi * static_cast<double>(over_pi[i]));
   return irradiance;
 }
 
@@ -152,8 +158,8 @@ BakeResult perform_bake(const BakeJob& job) {
   BakeResult result;
   result.provenance = provenance_of(options, job.map.surface);
 
-  Visibility seen = trace_surface(*job.tracer, job.map.surface.width(), job.map.surface.height(), patches_of(options),
-                                  options.needs_links());
+  Visibility seen = trace_surface(*job.tracer, job.map.surface.width(), job.map.surface.height(),
+                                  patches_of(options), options.needs_links());
   result.rays = seen.counts.rays;
   result.trace_cpu_seconds = process_cpu_seconds() - cpu_start;
   record_tracing(seen, result.provenance);
@@ -180,23 +186,26 @@ BakeResult perform_bake(const BakeJob& job) {
 std::string describe_bake(const BakeJob& job, const BakeResult& result) {
   const Bake& bake = result.bake;
   const double million_rays = 1e-6 * static_cast<double>(result.rays);
-  std::string text = fmt::format("{}: {}x{} texels, {:g} m, amplitude {:g} m, {} edges, {} patches\n", job.options.map.string(),
-                                 bake.width, bake.height, job.options.size_m, job.options.amplitude_m, job.options.edge,
-                                 job.options.patches);
-  text += fmt::format("rays      {:.1f} M in {:.1f} s ({:.1f} cpu-s, {:.2f} Mray/cpu-s)", million_rays, result.seconds,
-                      result.cpu_seconds, million_rays / result.trace_cpu_seconds);
-  if (result.provenance.contains("links")) text += fmt::format(", {:.1f} M links", 1e-6 * result.provenance["links"].get<double>());
+  std::string text = fmt::format("{}: {}x{} texels, {:g} m, amplitude {:g} m, {} edges, {} patches\n",
+                                 job.options.map.string(), bake.width, bake.height, job.options.size_m,
+                                 job.options.amplitude_m, job.options.edge, job.options.patches);
+  text += fmt::format("rays      {:.1f} M in {:.1f} s ({:.1f} cpu-s, {:.2f} Mray/cpu-s)", million_rays,
+                      result.seconds, result.cpu_seconds, million_rays / result.trace_cpu_seconds);
+  if (result.provenance.contains("links"))
+    text += fmt::format(", {:.1f} M links", 1e-6 * result.provenance["links"].get<double>());
   text += fmt::format(", peak memory {:.2f} GiB\n", static_cast<double>(peak_memory_bytes()) / kGib);
-  if (!bake.visible_fraction.empty()) text += fmt::format("ao        mean {:.5f}\n", mean_of(bake.visible_fraction));
+  if (!bake.visible_fraction.empty())
+    text += fmt::format("ao        mean {:.5f}\n", mean_of(bake.visible_fraction));
   if (!bake.irradiance.empty()) {
     text += fmt::format("E0/pi     mean {:.5f}", mean_of(bake.irradiance[0]) / kPi);
     if (bake.irradiance.size() > 1) text += fmt::format(", E1/pi {:.5f}", mean_of(bake.irradiance[1]) / kPi);
     double half = 0;
     for (size_t b = bake.irradiance.size(); b-- > 0;) half = half / 2 + mean_of(bake.irradiance[b]) / kPi;
     text += fmt::format(", all at albedo 0.5 {:.5f}\n", half);
-    text += fmt::format("energy    mean {:.6f} of pi after {} bounces, still under way {:.2g}, in the worst texel {:.2g}\n",
-                        mean_of(bake.total) / kPi, result.provenance["bounces_made"].get<int>(),
-                        result.provenance["mean_residual"].get<double>(), result.provenance["worst_residual"].get<double>());
+    text += fmt::format(
+        "energy    mean {:.6f} of pi after {} bounces, still under way {:.2g}, in the worst texel {:.2g}\n",
+        mean_of(bake.total) / kPi, result.provenance["bounces_made"].get<int>(),
+        result.provenance["mean_residual"].get<double>(), result.provenance["worst_residual"].get<double>());
   }
   return text;
 }
@@ -226,7 +235,8 @@ std::string describe_plan(const BakeJob& job) {
   const auto gib = [](size_t bytes) { return static_cast<double>(bytes) / kGib; };
   return fmt::format(
       "memory    {:.3f} GiB: surface and scene {:.3f}, links {:.3f}, planes {:.3f}\n"
-      "work      {:.1f} M rays, {:.1f} M links, {} bounces: about {:.0f} cpu-s tracing, {:.0f} cpu-s bouncing\n",
+      "work      {:.1f} M rays, {:.1f} M links, {} bounces: about {:.0f} cpu-s tracing, {:.0f} cpu-s "
+      "bouncing\n",
       gib(plan.memory_bytes()), gib(plan.surface_bytes), gib(plan.link_bytes), gib(plan.plane_bytes),
       1e-6 * static_cast<double>(plan.rays), 1e-6 * static_cast<double>(plan.links), job.options.bounces,
       plan.trace_cpu_seconds, plan.bounce_cpu_seconds);

@@ -28,8 +28,8 @@ struct BakeJob {
   BakeJob& operator=(const BakeJob&) = delete;
 };
 
-// Reads the map and the normal map, builds the tracer and plans the bake. Throws InputError where the input cannot be
-// used, or where the bake needs more memory than allowed (not with `only_plan`).
+// Reads the map and the normal map, builds the tracer and plans the bake. Throws InputError where the input
+// cannot be used, or where the bake needs more memory than allowed (not with `only_plan`).
 void prepare_bake(const BakeOptions& options, bool only_plan, BakeJob& job);
 
 struct BakeResult {

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "surface/filter.h"
@@ -24,7 +26,7 @@ struct BakeOptions {
   double size_m = 1;
   double amplitude_m = 0.1;
   std::filesystem::path normal_map;
-  std::string normal_y;               // "up", "down"; required with a normal map
+  std::string normal_y;                  // "up", "down"; required with a normal map
   std::string normals_from = "heights";  // "heights", "faces"
   std::string edge = "wrap";
   std::string tracer = "embree";
@@ -60,9 +62,15 @@ struct BakeOptions {
 // Declares them on `app`: one definition per option.
 void add_bake_options(CLI::App& app, BakeOptions& options);
 
-// Fills in what follows from other options: the preset (where its options were not given on the command line of `app`)
-// and the tracer's patches. Then what no single option can know: throws InputError for combinations that make no sense.
+// Fills in what follows from other options: the preset (where its options were not given on the command line
+// of `app`) and the tracer's patches. Then what no single option can know: throws InputError for combinations
+// that make no sense.
 void settle_bake_options(const CLI::App& app, BakeOptions& options);
+
+// Fails before the work where `output` cannot be written, or is what the bake reads. suffixes: see
+// io/output_file.h.
+void check_bake_output(const BakeOptions& options, const std::filesystem::path& output,
+                       std::initializer_list<std::string_view> suffixes = {});
 
 RayOptions ray_options(const BakeOptions& options);
 FilterOptions filter_options(const BakeOptions& options);

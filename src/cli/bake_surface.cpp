@@ -19,17 +19,21 @@ namespace {
 std::filesystem::path find_input(const Provenance& provenance, const char* path_key, const char* hash_key,
                                  const std::filesystem::path& bake_path) {
   if (!provenance.contains(path_key) || !provenance.contains(hash_key))
-    throw InputError(bake_path.string() + ": it does not say what it was made from, expected a bake of this version");
+    throw InputError(bake_path.string() +
+                     ": it does not say what it was made from, expected a bake of this version");
   const std::filesystem::path recorded = provenance[path_key].get<std::string>();
   const std::filesystem::path places[] = {recorded, bake_path.parent_path() / recorded,
                                           bake_path.parent_path() / recorded.filename()};
   for (const auto& place : places) {
     if (!std::filesystem::is_regular_file(place)) continue;
     if (sha256_of_file(place) != provenance[hash_key].get<std::string>())
-      throw InputError(place.string() + ": not the file the bake was made from, expected its SHA-256 to be the same");
+      throw InputError(place.string() +
+                       ": not the file the bake was made from, expected its SHA-256 to be the same");
     return place;
   }
-  throw InputError(fmt::format("{}: the map of this bake is not there, expected it beside the bake or where it was", recorded.string()));
+  throw InputError(
+      fmt::format("{}: the map of this bake is not there, expected it beside the bake or where it was",
+                  recorded.string()));
 }
 
 }  // namespace
@@ -38,7 +42,8 @@ BakeMap load_bake_map(const BakeOptions& options) {
   BakeMap map;
   Grid<float> heights = read_height_map(options.map, options.channel);
   map.surface = name_file(options.map, [&] {
-    if (options.filter_radius > 0) heights = bilateral_filter(heights, filter_options(options), edge_of(options));
+    if (options.filter_radius > 0)
+      heights = bilateral_filter(heights, filter_options(options), edge_of(options));
     map.lowest_m = options.amplitude_m * static_cast<double>(*std::ranges::min_element(heights.values));
     return make_surface(std::move(heights), options.size_m, options.amplitude_m, edge_of(options));
   });
@@ -103,7 +108,8 @@ BakeOptions map_options_from(const Provenance& p, const std::filesystem::path& b
       options.normals_from = normals == "from faces" ? "faces" : "heights";
     }
   } catch (const nlohmann::json::exception&) {
-    throw InputError(bake_path.string() + ": it does not say how it was made, expected a bake of this version");
+    throw InputError(bake_path.string() +
+                     ": it does not say how it was made, expected a bake of this version");
   }
   return options;
 }

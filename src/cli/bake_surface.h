@@ -25,8 +25,9 @@ std::unique_ptr<Tracer> make_tracer(const BakeOptions& options, const BakeMap& m
 // Bytes that tracer will take.
 size_t tracer_bytes(const BakeOptions& options, const Surface& surface);
 
-// What load_bake_map needs, as the provenance of a bake holds it. The map is looked for where the bake was told to find
-// it, and beside `bake_path`. Throws InputError where it is in neither place or is no longer the same file.
+// What load_bake_map needs, as the provenance of a bake holds it. The map is looked for where the bake was
+// told to find it, and beside `bake_path`. Throws InputError where it is in neither place or is no longer the
+// same file.
 BakeOptions map_options_from(const Provenance& provenance, const std::filesystem::path& bake_path);
 
 // The entries map_options_from reads.

@@ -10,6 +10,7 @@
 #include "cli/file_checks.h"
 #include "cli/name_file.h"
 #include "cli/referee_report.h"
+#include "cli/validators.h"
 #include "core/error.h"
 #include "io/output_file.h"
 
@@ -27,7 +28,8 @@ struct CheckOptions {
 // The bake's map, read again, and the bake measured against it.
 RefereeCheck ask_referee(const BakeFile& file, const CheckOptions& options) {
   const BakeMap map = load_bake_map(map_options_from(file.provenance, options.file));
-  return name_file(options.file, [&] { return check_against_referee(map.surface, file.bake, options.judge); });
+  return name_file(options.file,
+                   [&] { return check_against_referee(map.surface, file.bake, options.judge); });
 }
 
 int run_with_referee(const CheckOptions& options) {
@@ -58,19 +60,35 @@ CommandBody setup_check(CLI::App& app) {
   auto options = std::make_shared<CheckOptions>();
   app.add_option("FILE", options->file, "a bake (.exr), curves (.csv) or fits (.json)")->required();
   app.add_option("--tolerance", options->tolerance,
-                 "largest |energy sum / pi - 1| that passes; default: 2e-5, and what the bake says is still under way may be missing")
-      ->check(CLI::Range(1e-12, 1.0));
+                 "largest |energy sum / pi - 1| that passes; default: 2e-5, and what the bake says is still "
+                 "under way may be missing")
+      ->check(number_in(1e-12, 1));
   constexpr const char* kReferee = "Referee";
   RefereeCheckOptions& judge = options->judge;
   app.add_flag("--referee", options->referee,
-               "measure a sample of the bake's texels again with an unbiased path tracer; needs the map where it was, or beside the bake")
+               "measure a sample of the bake's texels again with an unbiased path tracer; needs the map "
+               "where it was, or beside the bake")
       ->group(kReferee);
-  app.add_option("--texels", judge.texels, "texels measured again")->check(CLI::Range(2, 1 << 28))->capture_default_str()->group(kReferee);
-  app.add_option("--paths", judge.paths, "paths per texel")->check(CLI::Range(1, 1 << 24))->capture_default_str()->group(kReferee);
-  app.add_option("--confidence", judge.confidence, "of every interval")->check(CLI::Range(0.5, 0.999999))->capture_default_str()->group(kReferee);
-  app.add_option("--mean-tolerance", judge.mean_tolerance, "of the means, relative")->check(CLI::Range(1e-6, 1.0))->capture_default_str()->group(kReferee);
+  app.add_option("--texels", judge.texels, "texels measured again")
+      ->check(whole_number_in(2, 1 << 28))
+      ->capture_default_str()
+      ->group(kReferee);
+  app.add_option("--paths", judge.paths, "paths per texel")
+      ->check(whole_number_in(1, 1 << 24))
+      ->capture_default_str()
+      ->group(kReferee);
+  app.add_option("--confidence", judge.confidence, "of every interval")
+      ->check(number_in(0.5, 0.999999))
+      ->capture_default_str()
+      ->group(kReferee);
+  app.add_option("--mean-tolerance", judge.mean_tolerance, "of the means, relative")
+      ->check(number_in(1e-6, 1))
+      ->capture_default_str()
+      ->group(kReferee);
   app.add_option("--bin-tolerance", judge.bin_tolerance, "of the means in an AO bin, relative")
-      ->check(CLI::Range(1e-6, 1.0))->capture_default_str()->group(kReferee);
+      ->check(number_in(1e-6, 1))
+      ->capture_default_str()
+      ->group(kReferee);
   add_common_options(app, options->common);
   return [options] { return run_check(*options); };
 }

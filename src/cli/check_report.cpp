@@ -15,10 +15,14 @@ nlohmann::ordered_json finite_or_null(double value) {
 }  // namespace
 
 std::string table_from_checks(const Checks& checks) {
-  std::string text = fmt::format("{:7} {:50} {:>13} {:>9} {:>10}\n", "", "quantity", "value", "expected", "tolerance");
+  std::string text =
+      fmt::format("{:7} {:50} {:>13} {:>9} {:>10}\n", "", "quantity", "value", "expected", "tolerance");
   for (const Check& check : checks) {
     const bool judged = std::isfinite(check.tolerance);
-    text += fmt::format("{:7} {:50} {:13.7g} {:9g} {:>10}  {}\n", !judged ? "" : check.passed() ? "ok" : "FAILED",
+    text += fmt::format("{:7} {:50} {:13.7g} {:9g} {:>10}  {}\n",
+                        !judged          ? ""
+                        : check.passed() ? "ok"
+                                         : "FAILED",
                         check.quantity, check.value, check.expected,
                         judged ? fmt::format("{:.1e}", check.tolerance) : "-", check.detail);
   }

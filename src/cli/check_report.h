@@ -9,7 +9,8 @@
 namespace hemibake {
 
 std::string table_from_checks(const Checks& checks);
-// {"passed": bool, "checks": [{"quantity", "value", "expected", "tolerance" (null: not judged), "passed", "detail"}]}
+// {"passed": bool, "checks": [{"quantity", "value", "expected", "tolerance" (null: not judged), "passed",
+// "detail"}]}
 nlohmann::ordered_json json_from_checks(const Checks& checks);
 
 }  // namespace hemibake

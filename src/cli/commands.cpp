@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <new>
@@ -38,7 +39,10 @@ constexpr std::array kCommands = {
     Command{"run", "bake, curves, fit and check in one go", setup_run},
 };
 
-int fail(int code, const std::string& message) {
+// One line, whatever a file name or a library puts into it.
+int fail(int code, std::string message) {
+  std::ranges::replace_if(
+      message, [](unsigned char c) { return c < ' '; }, ' ');
   fmt::print(stderr, "hemibake: {}\n", message);
   return code;
 }
@@ -51,7 +55,7 @@ int run_guarded(const CommandBody& body) {
   } catch (const CheckError& error) {
     return fail(kExitFailedCheck, error.what());
   } catch (const Interrupted&) {
-    return fail(kExitInterrupted, "interrupted, nothing was written");
+    return fail(kExitInterrupted, "interrupted, no file was left half written");
   } catch (const std::bad_alloc&) {
     return fail(kExitBadInput, "out of memory, expected less work (see --dry-run and --memory)");
   } catch (const std::exception& error) {
@@ -62,7 +66,8 @@ int run_guarded(const CommandBody& body) {
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
-  CLI::App app{"hemibake " HEMIBAKE_VERSION ": bakes the light on a height map and fits models of it for shaders."};
+  CLI::App app{"hemibake " HEMIBAKE_VERSION
+               ": bakes the light on a height map and fits models of it for shaders."};
   app.set_version_flag("--version", HEMIBAKE_VERSION);
   app.require_subcommand(1);
   CommandBody chosen;

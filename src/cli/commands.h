@@ -1,5 +1,5 @@
-// The command table. A command is one file in cli/ with one function `setup_NAME`: it declares the options on the
-// command's CLI11 app and returns what runs once they are parsed.
+// The command table. A command is one file in cli/ with one function `setup_NAME`: it declares the options on
+// the command's CLI11 app and returns what runs once they are parsed.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,8 @@ struct Command {
   CommandBody (*setup)(CLI::App& app);
 };
 
-// Parses, runs, reports: the whole program. Exit codes: 0, 1 (a check failed), 2 (input or usage), 130 (interrupted).
+// Parses, runs, reports: the whole program. Exit codes: 0, 1 (a check failed), 2 (input or usage), 130
+// (interrupted).
 int run_command_line(int argc, char** argv);
 
 }  // namespace hemibake

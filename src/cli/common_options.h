@@ -6,7 +6,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace hemibake {
 
@@ -18,10 +19,14 @@ struct CommonOptions {
 // Adds --json and --threads to `app`.
 void add_common_options(CLI::App& app, CommonOptions& options);
 
+// Adds --bins, the resolution of curves.
+CLI::Option* add_bins_option(CLI::App& app, int& bins);
+
 // To be called first when the command runs: sets the thread count.
 void apply_common_options(const CommonOptions& options);
 
-// The command's result: `json` on standard output with --json, else `text` on standard output.
+// The command's result on standard output: `json` with --json, else `text`. Throws InputError where that
+// cannot be written.
 void print_result(const CommonOptions& options, const nlohmann::json& json, const std::string& text);
 
 }  // namespace hemibake

@@ -16,8 +16,6 @@
 namespace hemibake {
 namespace {
 
-constexpr int kMaxBins = 65536;
-
 struct CurvesOptions {
   CommonOptions common;
   std::string bake;
@@ -52,9 +50,7 @@ CommandBody setup_curves(CLI::App& app) {
   auto options = std::make_shared<CurvesOptions>();
   app.add_option("BAKE", options->bake, "the bake, EXR with channels ao and irradiance.00…")->required();
   app.add_option("-o,--output", options->output, "the curves to write, CSV")->required();
-  app.add_option("--bins", options->bins, "bins of equal width on the AO axis 0..1")
-      ->check(CLI::Range(1, kMaxBins))
-      ->capture_default_str();
+  add_bins_option(app, options->bins);
   add_common_options(app, options->common);
   return [options] { return run_curves(*options); };
 }

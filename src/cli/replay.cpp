@@ -11,8 +11,8 @@ namespace hemibake {
 Replay replay_texel(const BakeJob& job, int x, int y) {
   const Surface& surface = job.map.surface;
   if (x < 0 || y < 0 || x >= surface.width() || y >= surface.height())
-    throw InputError(fmt::format("{}: there is no texel {},{}, expected 0,0 to {},{}", job.options.map.string(), x, y,
-                                 surface.width() - 1, surface.height() - 1));
+    throw InputError(fmt::format("{}: there is no texel {},{}, expected 0,0 to {},{}",
+                                 job.options.map.string(), x, y, surface.width() - 1, surface.height() - 1));
   Replay replay;
   replay.x = x;
   replay.y = y;
@@ -26,23 +26,26 @@ Replay replay_texel(const BakeJob& job, int x, int y) {
 }
 
 std::string describe_replay(const Replay& replay) {
-  std::string text = fmt::format("texel {},{}: height {:.7g} m above the lowest, normal ({:.6f}, {:.6f}, {:.6f})\n", replay.x,
-                                 replay.y, replay.height_m, replay.normal.x, replay.normal.y, replay.normal.z);
+  std::string text =
+      fmt::format("texel {},{}: height {:.7g} m above the lowest, normal ({:.6f}, {:.6f}, {:.6f})\n",
+                  replay.x, replay.y, replay.height_m, replay.normal.x, replay.normal.y, replay.normal.z);
   for (size_t i = 0; i < replay.rays.size(); ++i) {
     const RayRecord& ray = replay.rays[i];
-    text += fmt::format("ray {:5} direction ({:9.6f}, {:9.6f}, {:9.6f}) weight {:.6e} ", i, ray.direction.x, ray.direction.y,
-                        ray.direction.z, ray.cosine_weight);
-    text += ray.hit ? fmt::format("hit facet {} at texel ({:.4f}, {:.4f}) after {:.7g} m, tile {}\n", ray.facet, ray.hit_texel.x,
-                                  ray.hit_texel.y, ray.distance_m, ray.tiles_crossed)
-                    : "sky\n";
+    text += fmt::format("ray {:5} direction ({:9.6f}, {:9.6f}, {:9.6f}) weight {:.6e} ", i, ray.direction.x,
+                        ray.direction.y, ray.direction.z, ray.cosine_weight);
+    text += ray.hit
+                ? fmt::format("hit facet {} at texel ({:.4f}, {:.4f}) after {:.7g} m, tile {}\n", ray.facet,
+                              ray.hit_texel.x, ray.hit_texel.y, ray.distance_m, ray.tiles_crossed)
+                : "sky\n";
   }
   double sum = 0;
   for (const Link& link : replay.row.links) {
     text += fmt::format("link to patch {:8} weight {:.8f}\n", link.patch, link.weight);
     sum += static_cast<double>(link.weight);
   }
-  return text + fmt::format("ao {:.7f}, E0/pi {:.7f}, links {:.7f}, E0/pi + links {:.8f}\n", replay.row.visible_fraction,
-                            replay.row.direct_over_pi, sum, replay.row.direct_over_pi + sum);
+  return text + fmt::format("ao {:.7f}, E0/pi {:.7f}, links {:.7f}, E0/pi + links {:.8f}\n",
+                            replay.row.visible_fraction, replay.row.direct_over_pi, sum,
+                            replay.row.direct_over_pi + sum);
 }
 
 nlohmann::ordered_json json_from_replay(const Replay& replay) {

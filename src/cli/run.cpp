@@ -11,8 +11,8 @@
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "cli/file_checks.h"
-#include "cli/name_file.h"
 #include "core/error.h"
+#include "core/interrupt.h"
 #include "curves/curves.h"
 #include "fitting/models.h"
 #include "io/bake_file.h"
@@ -23,27 +23,45 @@
 namespace hemibake {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct RunOptions {
   CommonOptions common;
   BakeOptions bake;
-  std::filesystem::path folder;
+  fs::path folder;
   int bins = 100;
 };
 
-// The folder may be new; its parent may not.
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directory(folder, error);
-  if (error || !std::filesystem::is_directory(folder))
-    throw InputError(fmt::format("{}: could not make the folder: {}, expected a folder or a new name in one", folder.string(),
-                                 error ? error.message() : "a file of that name is there"));
-}
+// The folder of the results, which may be new; its parent may not. A new one goes again where nothing came of
+// it.
+class ResultFolder {
+ public:
+  explicit ResultFolder(const fs::path& path) : path_(path) {
+    std::error_code error;
+    made_ = fs::create_directory(path, error);
+    if (error || !fs::is_directory(path))
+      throw InputError(
+          fmt::format("{}: could not make the folder: {}, expected a folder or a new name in one",
+                      path.string(), error ? error.message() : "a file of that name is there"));
+  }
+  ~ResultFolder() {
+    std::error_code not_empty;
+    if (made_) fs::remove(path_, not_empty);
+  }
+  ResultFolder(const ResultFolder&) = delete;
+  ResultFolder& operator=(const ResultFolder&) = delete;
+
+ private:
+  fs::path path_;
+  bool made_ = false;
+};
 
 FitFile fit_all(const Curves& curves, const Provenance& provenance) {
   FitFile file;
   file.provenance = provenance;
   for (const char* model : {"published", "bounded"})
-    for (NamedFit& named : fit_model(model, curves, Abscissa::center, Weights::none)) file.fits.push_back(std::move(named));
+    for (NamedFit& named : fit_model(model, curves, Abscissa::center, Weights::none))
+      file.fits.push_back(std::move(named));
   return file;
 }
 
@@ -61,14 +79,35 @@ std::string describe_fits(const FitFile& file) {
   return text;
 }
 
+// A map may have too few AO values for a fit (flat ground has one): that is said, and leaves the rest whole.
+// The fit.json of an earlier run would then pass for this one's.
+std::optional<FitFile> write_fits_of(const Curves& curves, const RunOptions& options,
+                                     const Provenance& provenance) {
+  const fs::path path = options.folder / "fit.json";
+  FitFile fits;
+  try {
+    fits = fit_all(curves, provenance);
+  } catch (const std::runtime_error& error) {
+    throw_if_interrupted();
+    fmt::print(stderr, "hemibake: {}: no fit: {}\n", options.bake.map.string(), error.what());
+    fs::remove(path);
+    return std::nullopt;
+  }
+  write_fits(path, fits);
+  for (const std::string& warning : fit_warnings(fits.fits))
+    fmt::print(stderr, "hemibake: {}: warning: {}\n", options.bake.map.string(), warning);
+  return fits;
+}
+
 int run_all(const CLI::App& app, RunOptions& options) {
   apply_common_options(options.common);
   settle_bake_options(app, options.bake);
   if (!options.bake.wants("ao") || !options.bake.wants("irradiance"))
     throw InputError("--outputs: curves need ao and irradiance, expected both among them");
-  if (!options.bake.links.empty()) check_output_path(options.bake.links, {".h5", ".hdf5"});
-  make_folder(options.folder);
-  for (const char* name : {"bake.exr", "curves.csv", "fit.json", "check.json"}) check_output_path(options.folder / name);
+  const ResultFolder folder(options.folder);
+  for (const char* name : {"bake.exr", "curves.csv", "fit.json", "check.json"})
+    check_bake_output(options.bake, options.folder / name);
+  if (!options.bake.links.empty()) check_bake_output(options.bake, options.bake.links, {".h5", ".hdf5"});
 
   BakeJob job;
   prepare_bake(options.bake, false, job);
@@ -84,17 +123,17 @@ int run_all(const CLI::App& app, RunOptions& options) {
   for (const std::string& warning : result.warnings)
     fmt::print(stderr, "hemibake: {}: warning: {}\n", options.bake.map.string(), warning);
 
-  const FitFile fits = name_file(options.bake.map, [&] { return fit_all(curves, bake.provenance); });
-  write_fits(options.folder / "fit.json", fits);
-  for (const std::string& warning : fit_warnings(fits.fits))
-    fmt::print(stderr, "hemibake: {}: warning: {}\n", options.bake.map.string(), warning);
-
+  const std::optional<FitFile> fits = write_fits_of(curves, options, bake.provenance);
   nlohmann::ordered_json json = json_from_bake(job, result);
-  json["fits"] = json_from_fits(fits);
-  json["fits"].erase("provenance");
+  json["fits"] = nullptr;
+  if (fits) {
+    json["fits"] = json_from_fits(*fits);
+    json["fits"].erase("provenance");
+  }
   json["check"] = json_from_checks(checks);
-  print_result(options.common, json, describe_bake(job, result) + describe_fits(fits) + table_from_checks(checks));
-  return all_passed(checks) ? 0 : 1;
+  print_result(options.common, json,
+               describe_bake(job, result) + (fits ? describe_fits(*fits) : "") + table_from_checks(checks));
+  return fits && all_passed(checks) ? 0 : 1;
 }
 
 }  // namespace
@@ -102,10 +141,12 @@ int run_all(const CLI::App& app, RunOptions& options) {
 CommandBody setup_run(CLI::App& app) {
   auto options = std::make_shared<RunOptions>();
   add_bake_options(app, options->bake);
-  app.add_option("-o,--output", options->folder, "folder for bake.exr, curves.csv, fit.json and check.json; made if new")
-      ->required()->option_text("DIR")->group("Output");
-  app.add_option("--bins", options->bins, "bins of the curves on the AO axis")
-      ->check(CLI::Range(1, 65536))->capture_default_str()->group("Output");
+  app.add_option("-o,--output", options->folder,
+                 "folder for bake.exr, curves.csv, fit.json and check.json; made if new")
+      ->required()
+      ->option_text("DIR")
+      ->group("Output");
+  add_bins_option(app, options->bins)->group("Output");
   add_common_options(app, options->common);
   return [&app, options] { return run_all(app, *options); };
 }

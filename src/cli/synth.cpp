@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
+#include "cli/validators.h"
 #include "core/constants.h"
 #include "core/error.h"
 #include "io/image_io.h"
@@ -50,11 +52,6 @@ std::string kinds_help() {
   return text + "Every map continues without a seam where it repeats.";
 }
 
-// CLI11 takes −1 for 2⁶⁴ − 1.
-std::string refuse_sign(const std::string& text) {
-  return text.starts_with('-') ? text + ", expected a whole number of 0 or more" : "";
-}
-
 int run(const SynthOptions& options) {
   apply_common_options(options.common);
   check_output_path(options.output, {".exr", ".png"});
@@ -84,7 +81,7 @@ int run(const SynthOptions& options) {
 
 CommandBody setup_synth(CLI::App& app) {
   auto options = std::make_shared<SynthOptions>();
-  constexpr int kMaxSide = static_cast<int>(kMaxTexels);
+  constexpr uint64_t kMaxSide = kMaxTexels;
   app.add_option("KIND", options->kind, "what to make, see below")
       ->required()
       ->check(CLI::IsMember(kind_names()));
@@ -92,16 +89,16 @@ CommandBody setup_synth(CLI::App& app) {
       ->required()
       ->option_text("MAP");
   app.add_option("--width", options->width, fmt::format("texels; width x height at most {}", kMaxTexels))
-      ->check(CLI::Range(1, kMaxSide))
+      ->check(whole_number_in(1, kMaxSide))
       ->capture_default_str();
   app.add_option("--height", options->height, "texels, down the image")
-      ->check(CLI::Range(1, kMaxSide))
+      ->check(whole_number_in(1, kMaxSide))
       ->capture_default_str();
   app.add_option("--seed", options->seed, "another number, another map (bricks, shapes, concrete, noise)")
-      ->check(refuse_sign)
+      ->check(whole_number_in(0, std::numeric_limits<uint64_t>::max()))
       ->capture_default_str();
   app.add_option("--angle", options->angle_deg, "degrees, of bowl and groove; default in brackets below")
-      ->check(CLI::Range(kMinSyntheticAngleDeg, kMaxSyntheticAngleDeg));
+      ->check(number_in(kMinSyntheticAngleDeg, kMaxSyntheticAngleDeg));
   add_common_options(app, options->common);
   app.footer(kinds_help());
   return [options] { return run(*options); };

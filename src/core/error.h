@@ -30,7 +30,8 @@ class Interrupted : public std::runtime_error {
 
 template <class A, class B>
 void expect_equal(const A& actual, const B& expected, const std::string& what) {
-  if (!(actual == expected)) fail_expectation(what, static_cast<double>(actual), static_cast<double>(expected));
+  if (!(actual == expected))
+    fail_expectation(what, static_cast<double>(actual), static_cast<double>(expected));
 }
 
 }  // namespace hemibake

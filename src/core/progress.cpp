@@ -50,8 +50,8 @@ void Progress::draw(steady_clock::time_point now) {
   const double rate = done / seconds;
   const double fraction = total_ > 0 ? std::min(1.0, done / static_cast<double>(total_)) : 0.0;
   const double left_s = rate > 0 ? std::max(0.0, static_cast<double>(total_) - done) / rate : 0.0;
-  fmt::print(stderr, "\r\x1b[K{}: {:3.0f} %  {}{}/s  {:.0f} s left", label_, 100 * fraction, scaled(rate), unit_,
-             left_s);
+  fmt::print(stderr, "\r\x1b[K{}: {:3.0f} %  {}{}/s  {:.0f} s left", label_, 100 * fraction, scaled(rate),
+             unit_, left_s);
   std::fflush(stderr);
   drawn_ = true;
 }

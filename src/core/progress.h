@@ -11,7 +11,8 @@ namespace hemibake {
 
 class Progress {
  public:
-  // label: what is being done ("tracing"). total: how much there is of it, in `unit` ("ray"); may be exceeded.
+  // label: what is being done ("tracing"). total: how much there is of it, in `unit` ("ray"); may be
+  // exceeded.
   Progress(std::string label, uint64_t total, std::string unit);
   ~Progress();
   Progress(const Progress&) = delete;

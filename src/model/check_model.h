@@ -8,8 +8,8 @@
 
 namespace hemibake {
 
-// Evaluates model.direct, .bounce_ratio and .total over α × ρ, ends included, in float: everything finite, F₀ and the
-// total inside 0..1, τ inside 0..1, and the total 1 at ρ = 1.
+// Evaluates model.direct, .bounce_ratio and .total over α × ρ, ends included, in float: everything finite, F₀
+// and the total inside 0..1, τ inside 0..1, and the total 1 at ρ = 1.
 template <class Model>
 Checks check_model(const Model& model, double tolerance) {
   constexpr int kSteps = 1000, kAlbedoSteps = 20;
@@ -22,7 +22,8 @@ Checks check_model(const Model& model, double tolerance) {
     const float ao = static_cast<float>(i) / kSteps;
     widen(direct, model.template direct<float>(ao), 0, 1);
     widen(ratio, model.template bounce_ratio<float>(ao), 0, 1);
-    for (int j = 0; j <= kAlbedoSteps; ++j) widen(total, model.template total<float>(ao, static_cast<float>(j) / kAlbedoSteps), 0, 1);
+    for (int j = 0; j <= kAlbedoSteps; ++j)
+      widen(total, model.template total<float>(ao, static_cast<float>(j) / kAlbedoSteps), 0, 1);
     if (ao > 0) widen(whole, model.template total<float>(ao, 1.0f), 1, 1);
   }
   return {{"F0 outside 0..1, worst", direct, 0, tolerance, ""},

@@ -10,8 +10,8 @@ namespace hemibake {
 // Digits of `index` in `base` mirrored about the point: 0..1, below 1.
 double radical_inverse(uint32_t base, uint32_t index);
 
-// 64 well-mixed bits of (seed, stream, index): the only source of randomness, so that every number can be had again
-// from what it is for.
+// 64 well-mixed bits of (seed, stream, index): the only source of randomness, so that every number can be had
+// again from what it is for.
 inline uint64_t mix_bits(uint64_t seed, uint64_t stream, uint64_t index) {
   // SplitMix64 finaliser (Steele, Lea, Flood 2014), applied per word.
   const auto finalise = [](uint64_t z) {
@@ -19,7 +19,8 @@ inline uint64_t mix_bits(uint64_t seed, uint64_t stream, uint64_t index) {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
     return z ^ (z >> 31);
   };
-  return finalise(finalise(finalise(seed + 0x9e3779b97f4a7c15ull) + stream) + 0x9e3779b97f4a7c15ull * (index + 1));
+  return finalise(finalise(finalise(seed + 0x9e3779b97f4a7c15ull) + stream) +
+                  0x9e3779b97f4a7c15ull * (index + 1));
 }
 
 // Uniform in [0, 1) from the upper 53 bits.

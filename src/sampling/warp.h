@@ -1,6 +1,7 @@
 // Maps from the unit square to directions and triangles: each with its density and its inverse.
-// Directions are unit vectors in the tangent frame (z = normal). Source: Pharr, Jakob, Humphreys, "Physically Based
-// Rendering", 4th ed. 2023, A.5. `cos_max` is the cosine of the cone's half-aperture, 0 for the whole hemisphere.
+// Directions are unit vectors in the tangent frame (z = normal). Source: Pharr, Jakob, Humphreys, "Physically
+// Based Rendering", 4th ed. 2023, A.5. `cos_max` is the cosine of the cone's half-aperture, 0 for the whole
+// hemisphere.
 #pragma once
 
 #include <glm/vec2.hpp>

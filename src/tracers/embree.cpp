@@ -18,8 +18,10 @@
 namespace hemibake {
 namespace {
 
-// The scene is in units of texels: vertices then stand on integers, which float holds exactly on any map we take.
-constexpr int kSmallestBlock = 64;  // texels: smaller maps are repeated, so that a step to the next copy is worth it
+// The scene is in units of texels: vertices then stand on integers, which float holds exactly on any map we
+// take.
+constexpr int kSmallestBlock =
+    64;                      // texels: smaller maps are repeated, so that a step to the next copy is worth it
 constexpr int kMargin = 64;  // texels of neighbouring copies around the block
 constexpr uint32_t kNoFacet = 0xffffffff;
 
@@ -30,8 +32,8 @@ enum class Fate { kSky, kHit, kCutShort };
 
 struct SurfaceHit {
   uint32_t facet = kNoFacet;
-  float u = 0, v = 0;            // barycentric coordinates of the facet's corners 1 and 2
-  double distance_texels = 0;    // from the start of the ray
+  float u = 0, v = 0;          // barycentric coordinates of the facet's corners 1 and 2
+  double distance_texels = 0;  // from the start of the ray
   int tiles_crossed = 0;
 };
 
@@ -50,7 +52,9 @@ class EmbreeTracer final : public Tracer {
  private:
   struct FloatFrame {
     glm::vec3 tangent, bitangent, normal;
-    glm::vec3 world_from_tangent(const glm::vec3& v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
+    glm::vec3 world_from_tangent(const glm::vec3& v) const {
+      return v.x * tangent + v.y * bitangent + v.z * normal;
+    }
   };
 
   void build_scene();
@@ -63,8 +67,9 @@ class EmbreeTracer final : public Tracer {
                      uint32_t own_facet, SurfaceHit* hit) const;
   float length_in_block(float x, float y, const glm::vec3& direction) const;
   template <class StartOf>
-  void trace_rays(const std::vector<WeightedDirection>& rays, const FloatFrame& frame, const StartOf& start_of,
-                  uint32_t own_facet, bool with_links, Row& row, TracerCounts& counts) const;
+  void trace_rays(const std::vector<WeightedDirection>& rays, const FloatFrame& frame,
+                  const StartOf& start_of, uint32_t own_facet, bool with_links, Row& row,
+                  TracerCounts& counts) const;
   void add_links(const SurfaceHit& hit, double weight, std::vector<Link>& links) const;
   void trace_facet(uint32_t facet, bool with_links, Row& row, TracerCounts& counts) const;
   uint32_t facet_of_primitive(uint32_t primitive) const;
@@ -101,8 +106,8 @@ EmbreeTracer::EmbreeTracer(const Surface& surface, const RayOptions& options)
 
   const double range = height_range_m(surface) / surface.texel_size_m;
   top_texels_ = static_cast<float>(range);
-  // A thousandth of a texel clears the rounding of the start; on a very low map the lift must not jump over the
-  // relief, on a very high one it must clear the rounding of the heights.
+  // A thousandth of a texel clears the rounding of the start; on a very low map the lift must not jump over
+  // the relief, on a very high one it must clear the rounding of the heights.
   lift_texels_ = std::max(1e-3 * std::min(1.0, range), 0x1p-21 * range);
   max_distance_texels_ = static_cast<float>(options.max_distance_m / surface.texel_size_m);
 
@@ -122,7 +127,8 @@ EmbreeTracer::~EmbreeTracer() {
 }
 
 void EmbreeTracer::build_scene() {
-  // One thread builds: the order of triangles in the tree decides ties between them, and must not depend on --threads.
+  // One thread builds: the order of triangles in the tree decides ties between them, and must not depend on
+  // --threads.
   device_ = rtcNewDevice("threads=1");
   if (device_ == nullptr) throw std::runtime_error("Embree finds no device");
   rtcSetDeviceErrorFunction(device_, ignore_embree_error, nullptr);
@@ -137,9 +143,9 @@ void EmbreeTracer::build_scene() {
   auto* vertices = static_cast<float*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
                               static_cast<size_t>(columns + 1) * (rows + 1)));
-  auto* indices = static_cast<uint32_t*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
-                              size_t{2} * columns * rows));
+  auto* indices =
+      static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                     3 * sizeof(uint32_t), size_t{2} * columns * rows));
   if (vertices == nullptr || indices == nullptr) {
     rtcReleaseGeometry(geometry);
     throw std::bad_alloc();
@@ -168,12 +174,14 @@ void EmbreeTracer::build_scene() {
   rtcReleaseGeometry(geometry);
   rtcCommitScene(scene_);
   if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
-    throw std::runtime_error(fmt::format("Embree could not build the scene (error {})", static_cast<int>(error)));
+    throw std::runtime_error(
+        fmt::format("Embree could not build the scene (error {})", static_cast<int>(error)));
 }
 
 uint32_t EmbreeTracer::facet_of_primitive(uint32_t primitive) const {
   const uint32_t cell = primitive / 2;
-  const int x = static_cast<int>(cell % scene_columns_) - margin_, y = static_cast<int>(cell / scene_columns_) - margin_;
+  const int x = static_cast<int>(cell % scene_columns_) - margin_,
+            y = static_cast<int>(cell / scene_columns_) - margin_;
   if (!wrap_) return primitive;
   const int i = wrap_index(x, surface_.width()), j = wrap_index(y, surface_.height());
   return 2 * static_cast<uint32_t>(surface_.heights_m.index(i, j)) + primitive % 2;
@@ -186,8 +194,8 @@ glm::dvec2 EmbreeTracer::hit_position_texels(const SurfaceHit& hit) const {
   return glm::dvec2(corners.texel[0]) + sign * glm::dvec2(hit.u, hit.v);
 }
 
-// Traces one straight piece inside the scene; on a hit of the ray's own facet (rounding on a steep wall) it goes on
-// behind it: a flat facet never sees itself.
+// Traces one straight piece inside the scene; on a hit of the ray's own facet (rounding on a steep wall) it
+// goes on behind it: a flat facet never sees itself.
 Fate EmbreeTracer::follow_segment(const glm::vec3& start, const glm::vec3& direction, float length,
                                   uint32_t own_facet, SurfaceHit* hit) const {
   RTCIntersectContext context;
@@ -226,8 +234,9 @@ Fate EmbreeTracer::follow_segment(const glm::vec3& start, const glm::vec3& direc
   }
 }
 
-// Length along a ray from (x, y) until it leaves the block and the margin, less one cell kept as overlap. In float: an
-// error is far less than that cell. A direction of 0 along an axis never leaves along it (x / 0 = ∞, inside).
+// Length along a ray from (x, y) until it leaves the block and the margin, less one cell kept as overlap. In
+// float: an error is far less than that cell. A direction of 0 along an axis never leaves along it (x / 0 =
+// ∞, inside).
 float EmbreeTracer::length_in_block(float x, float y, const glm::vec3& direction) const {
   const float reach = static_cast<float>(margin_ - 1);
   const float edge_x = std::signbit(direction.x) ? -reach : static_cast<float>(block_width_) + reach;
@@ -250,9 +259,10 @@ Fate EmbreeTracer::follow(const glm::vec3& start, const glm::vec3& direction, ui
   return follow_beyond(start, direction, first_length, end, own_facet, hit);
 }
 
-// Goes on through the following copies of the map. Positions come from the start in double, so that nothing drifts.
-Fate EmbreeTracer::follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length, double end,
-                                 uint32_t own_facet, SurfaceHit* hit) const {
+// Goes on through the following copies of the map. Positions come from the start in double, so that nothing
+// drifts.
+Fate EmbreeTracer::follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length,
+                                 double end, uint32_t own_facet, SurfaceHit* hit) const {
   const double horizontal = std::hypot(direction.x, direction.y);
   const double cut = cut_distance_texels_ / horizontal;
   // Each piece begins a little before the last one ended: rounding of its start opens no gap.
@@ -337,7 +347,9 @@ void EmbreeTracer::trace_rays(const std::vector<WeightedDirection>& rays, const 
 
 void EmbreeTracer::trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const {
   const glm::vec3 start = texel_start(texel);
-  trace_rays(texel_directions_, texel_frame(texel), [&](size_t) { return start; }, kNoFacet, with_links, row, counts);
+  trace_rays(
+      texel_directions_, texel_frame(texel), [&](size_t) { return start; }, kNoFacet, with_links, row,
+      counts);
 }
 
 void EmbreeTracer::trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const {
@@ -352,17 +364,18 @@ void EmbreeTracer::trace_facet(uint32_t facet, bool with_links, Row& row, Tracer
   const double shift_u = unit_interval(mix_bits(options_.seed, kFacetShiftU, facet));
   const double shift_v = unit_interval(mix_bits(options_.seed, kFacetShiftV, facet));
   const auto start_of = [&](size_t i) {
-    const glm::dvec2 uv = sample_uniform_triangle({shift_modulo_one(facet_points_[i].x, shift_u),
-                                                   shift_modulo_one(facet_points_[i].y, shift_v)});
+    const glm::dvec2 uv = sample_uniform_triangle(
+        {shift_modulo_one(facet_points_[i].x, shift_u), shift_modulo_one(facet_points_[i].y, shift_v)});
     // The height is taken at the rounded position: on a steep wall that rounding is more than the lift.
-    const float x = static_cast<float>(corners[0].x + leg * uv.x), y = static_cast<float>(corners[0].y + leg * uv.y);
+    const float x = static_cast<float>(corners[0].x + leg * uv.x),
+                y = static_cast<float>(corners[0].y + leg * uv.y);
     const double z = corners[0].z + slope_x * (x - corners[0].x) + slope_y * (y - corners[0].y);
     return glm::vec3(x, y, z + lift_texels_);
   };
   const double turn = 2 * kPi * unit_interval(mix_bits(options_.seed, kFacetRotation, facet));
   const Frame frame = rotated(frame_about(facet_normal(surface_, facet)), turn);
-  trace_rays(facet_directions_, {frame.tangent, frame.bitangent, frame.normal}, start_of, facet, with_links, row,
-             counts);
+  trace_rays(facet_directions_, {frame.tangent, frame.bitangent, frame.normal}, start_of, facet, with_links,
+             row, counts);
 }
 
 std::vector<RayRecord> EmbreeTracer::replay_texel(uint32_t texel) const {

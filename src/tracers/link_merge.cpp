@@ -7,18 +7,22 @@
 namespace hemibake {
 namespace {
 
-int settle_index(int i, int n, Edge edge) { return edge == Edge::kWrap ? wrap_index(i, n) : std::clamp(i, 0, n - 1); }
+int settle_index(int i, int n, Edge edge) {
+  return edge == Edge::kWrap ? wrap_index(i, n) : std::clamp(i, 0, n - 1);
+}
 
 void add_link(const Surface& surface, int x, int y, double weight, std::vector<Link>& links) {
   if (weight <= 0) return;
-  const int i = settle_index(x, surface.width(), surface.edge), j = settle_index(y, surface.height(), surface.edge);
+  const int i = settle_index(x, surface.width(), surface.edge),
+            j = settle_index(y, surface.height(), surface.edge);
   links.push_back({static_cast<uint32_t>(surface.heights_m.index(i, j)), static_cast<float>(weight)});
 }
 
 constexpr uint32_t kFree = 0xffffffff;
 
-// Leaves each patch once, in order of its first link, weights summed in double in the order of the links. A hash table
-// of the patches met so far: most rays of a row meet a patch that another one met, and sorting them all costs more.
+// Leaves each patch once, in order of its first link, weights summed in double in the order of the links. A
+// hash table of the patches met so far: most rays of a row meet a patch that another one met, and sorting
+// them all costs more.
 void sum_equal_patches(std::vector<Link>& links) {
   thread_local std::vector<uint32_t> slots;  // scratch: index into links of the patch in this slot
   thread_local std::vector<double> sums;
@@ -28,7 +32,8 @@ void sum_equal_patches(std::vector<Link>& links) {
   for (const Link link : links) {
     // Fibonacci hashing (Knuth, TAOCP 3, 6.4): neighbouring patches spread over the table.
     size_t slot = (link.patch * 0x9e3779b1u) >> 7 & (slot_count - 1);
-    while (slots[slot] != kFree && links[slots[slot]].patch != link.patch) slot = (slot + 1) & (slot_count - 1);
+    while (slots[slot] != kFree && links[slots[slot]].patch != link.patch)
+      slot = (slot + 1) & (slot_count - 1);
     if (slots[slot] == kFree) {
       slots[slot] = static_cast<uint32_t>(sums.size());
       links[sums.size()].patch = link.patch;
@@ -43,11 +48,12 @@ void sum_equal_patches(std::vector<Link>& links) {
 }  // namespace
 
 void add_nearest_link(const Surface& surface, glm::dvec2 position, double weight, std::vector<Link>& links) {
-  add_link(surface, static_cast<int>(std::floor(position.x + 0.5)), static_cast<int>(std::floor(position.y + 0.5)),
-           weight, links);
+  add_link(surface, static_cast<int>(std::floor(position.x + 0.5)),
+           static_cast<int>(std::floor(position.y + 0.5)), weight, links);
 }
 
-void add_bilinear_links(const Surface& surface, glm::dvec2 position, double weight, std::vector<Link>& links) {
+void add_bilinear_links(const Surface& surface, glm::dvec2 position, double weight,
+                        std::vector<Link>& links) {
   const int x = static_cast<int>(std::floor(position.x)), y = static_cast<int>(std::floor(position.y));
   const double fx = position.x - x, fy = position.y - y;
   add_link(surface, x, y, weight * (1 - fx) * (1 - fy), links);

@@ -13,10 +13,10 @@ namespace hemibake {
 enum class TexelLinks { kNearest, kBilinear };
 
 struct RayOptions {
-  int rays = 256;                                                  // per receiver, 1..2^20
-  double cone_degrees = 180;                                       // full aperture about the normal, (0, 180]
+  int rays = 256;             // per receiver, 1..2^20
+  double cone_degrees = 180;  // full aperture about the normal, (0, 180]
   double max_distance_m = std::numeric_limits<double>::infinity();  // hits beyond are sky, > 0
-  DirectionSet directions = DirectionSet::kUniform;                // of texels; facets always use kCosine
+  DirectionSet directions = DirectionSet::kUniform;                 // of texels; facets always use kCosine
   Patches patches = Patches::kFacets;
   TexelLinks texel_links = TexelLinks::kBilinear;
   uint64_t seed = 0;

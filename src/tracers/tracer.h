@@ -1,12 +1,14 @@
-// What a tracer answers: how much sky a receiver sees, how much light that is, and which patches block the rest.
+// What a tracer answers: how much sky a receiver sees, how much light that is, and which patches block the
+// rest.
 //
-// Receivers are texels (with their shading normals) and patches; patches are what light is re-emitted by: facets of
-// the surface (surface/facets.h), or the texels themselves, with the same index as the texel.
+// Receivers are texels (with their shading normals) and patches; patches are what light is re-emitted by:
+// facets of the surface (surface/facets.h), or the texels themselves, with the same index as the texel.
 #pragma once
 
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 namespace hemibake {
@@ -19,8 +21,8 @@ struct Link {
   float weight;
 };
 
-// What one receiver sees. Σ weights + direct_over_pi = 1 to rounding (with the march's published weights up to 2,
-// see tracers/march.h).
+// What one receiver sees. Σ weights + direct_over_pi = 1 to rounding (with the march's published weights up
+// to 2, see tracers/march.h).
 struct Row {
   double visible_fraction = 0;  // α, uniform fraction of the hemisphere about the normal that is sky, 0..1
   double direct_over_pi = 0;    // E₀/π, cosine-weighted fraction, 0..1
@@ -34,15 +36,16 @@ struct RayRecord {
   double cosine_weight;   // share of E₀/π, or of the links
   double uniform_weight;  // share of α
   bool hit;
-  uint32_t facet;           // where hit
-  glm::dvec2 hit_texel;     // where hit: position in texels, texel centres at integers, wrapped into the map
-  double distance_m;        // where hit: along the ray
-  int tiles_crossed;        // map copies entered after the first
+  uint32_t facet;        // where hit
+  glm::dvec2 hit_texel;  // where hit: position in texels, texel centres at integers, wrapped into the map
+  double distance_m;     // where hit: along the ray
+  int tiles_crossed;     // map copies entered after the first
 };
 
 struct TracerCounts {
-  uint64_t rays = 0;       // rays (or azimuths) traced
-  uint64_t cut_short = 0;  // rays still below the highest texel where the tracer stops following them, taken for sky
+  uint64_t rays = 0;  // rays (or azimuths) traced
+  uint64_t cut_short =
+      0;  // rays still below the highest texel where the tracer stops following them, taken for sky
 };
 
 // A surface made ready for tracing. Safe to call from many threads; the answer depends on the receiver only.
@@ -53,6 +56,18 @@ class Tracer {
   // Fills `row`, its links only if `with_links`. Adds to `counts`.
   virtual void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const = 0;
   virtual void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const = 0;
+  // Rows of the receivers first, first + 1, …: the same as one by one, for tracers that answer neighbours
+  // together.
+  virtual void trace_texels(uint32_t first, bool with_links, std::span<Row> rows,
+                            TracerCounts& counts) const {
+    for (size_t i = 0; i < rows.size(); ++i)
+      trace_texel(first + static_cast<uint32_t>(i), with_links, rows[i], counts);
+  }
+  virtual void trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
+                             TracerCounts& counts) const {
+    for (size_t i = 0; i < rows.size(); ++i)
+      trace_patch(first + static_cast<uint32_t>(i), with_links, rows[i], counts);
+  }
   // Every ray trace_texel shoots for this texel, in order.
   virtual std::vector<RayRecord> replay_texel(uint32_t texel) const = 0;
 };

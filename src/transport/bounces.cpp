@@ -101,7 +101,8 @@ Bounces bounce_light(const Visibility& seen, const BounceOptions& options) {
 
   if (options.converge_tolerance) {
     Progress converging("converging", static_cast<uint64_t>(options.max_bounces), "bounce");
-    while (worst_residual(total) >= *options.converge_tolerance && result.bounces_made < options.max_bounces) {
+    while (worst_residual(total) >= *options.converge_tolerance &&
+           result.bounces_made < options.max_bounces) {
       const int batch = std::min(kBouncesBetweenTests, options.max_bounces - result.bounces_made);
       // After the loop above the patches are at bounce `bounces_made`; the gather adds one more.
       for (int i = 1; i < batch; ++i) flow.bounce();

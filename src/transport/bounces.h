@@ -11,9 +11,9 @@
 namespace hemibake {
 
 struct BounceOptions {
-  int bounces = 20;                         // stored one by one, 0..
+  int bounces = 20;                          // stored one by one, 0..
   std::optional<double> converge_tolerance;  // go on until the worst texel's residual is below it
-  int max_bounces = 2000;                   // the end of that in any case
+  int max_bounces = 2000;                    // the end of that in any case
 };
 
 struct Bounces {
@@ -23,8 +23,8 @@ struct Bounces {
   int bounces_made = 0;
   double mean_residual = 0, worst_residual = 0;
   uint32_t worst_texel = 0;
-  // Only with a tolerance: texels whose residual is not below it, and those among them whose every link leads to
-  // themselves, so that no number of bounces would help.
+  // Only with a tolerance: texels whose residual is not below it, and those among them whose every link leads
+  // to themselves, so that no number of bounces would help.
   std::vector<uint32_t> texels_short, texels_closed;
 };
 

@@ -13,7 +13,8 @@
 namespace hemibake {
 namespace {
 
-// Sums of floats: each of up to 1000 stored bounces is rounded to 3·10⁻⁸ of itself, their sum to less than this.
+// Sums of floats: each of up to 1000 stored bounces is rounded to 3·10⁻⁸ of itself, their sum to less than
+// this.
 constexpr double kRounding = 2e-6;
 constexpr double kRowSumTolerance = 1e-5;
 constexpr double kForInformation = std::numeric_limits<double>::infinity();
@@ -55,7 +56,8 @@ void check_energy(const Bake& bake, const BakeCheckOptions& options, Checks& che
     for (const auto& plane : bake.irradiance) stored += static_cast<double>(plane[i]) / kPi;
     excess.offer(std::max(0.0, stored - sum), 0, i);
     if (!bake.visible_fraction.empty()) {
-      const int bin = std::clamp(static_cast<int>(options.bins * bake.visible_fraction[i]), 0, options.bins - 1);
+      const int bin =
+          std::clamp(static_cast<int>(options.bins * bake.visible_fraction[i]), 0, options.bins - 1);
       bin_totals[static_cast<size_t>(bin)].add(sum);
     }
   }
@@ -64,8 +66,10 @@ void check_energy(const Bake& bake, const BakeCheckOptions& options, Checks& che
     if (bin_totals[b].count > 0) bin.offer(bin_totals[b].mean, 1, b);
 
   const double judged = options.energy_tolerance.value_or(kForInformation);
-  checks.push_back({"energy sum/pi + residual, worst texel", balance.value, 1, kRounding, at_texel(bake, balance.texel)});
-  checks.push_back({"stored bounces above the sum, worst texel", excess.value, 0, kRounding, at_texel(bake, excess.texel)});
+  checks.push_back(
+      {"energy sum/pi + residual, worst texel", balance.value, 1, kRounding, at_texel(bake, balance.texel)});
+  checks.push_back({"stored bounces above the sum, worst texel", excess.value, 0, kRounding,
+                    at_texel(bake, excess.texel)});
   checks.push_back({"energy sum/pi, worst texel", total.value, 1, judged, at_texel(bake, total.texel)});
   if (bin.distance >= 0)
     checks.push_back({"energy sum/pi, worst AO bin", bin.value, 1, judged, fmt::format("bin {}", bin.texel)});
@@ -80,11 +84,12 @@ void check_ranges(const Bake& bake, Checks& checks) {
       outside.offer(e < 0 ? -e : std::max(0.0, e - 1), 0, i);
     }
   if (outside.distance >= 0)
-    checks.push_back({"irradiance/pi outside 0..1, worst", outside.value, 0, kRounding, at_texel(bake, outside.texel)});
+    checks.push_back(
+        {"irradiance/pi outside 0..1, worst", outside.value, 0, kRounding, at_texel(bake, outside.texel)});
 }
 
-// The cosine-weighted fraction E₀/π lies between what the same α gives when the horizon is darkest or brightest:
-// visible directions all at the rim, or all about the normal.
+// The cosine-weighted fraction E₀/π lies between what the same α gives when the horizon is darkest or
+// brightest: visible directions all at the rim, or all about the normal.
 void check_bounds(const Bake& bake, const BakeCheckOptions& options, Checks& checks) {
   Extreme below, above;
   for (size_t i = 0; i < bake.visible_fraction.size(); ++i) {
@@ -93,8 +98,10 @@ void check_bounds(const Bake& bake, const BakeCheckOptions& options, Checks& che
     below.offer(std::max(0.0, alpha * alpha - cosine), 0, i);
     above.offer(std::max(0.0, cosine - alpha * (2 - alpha)), 0, i);
   }
-  checks.push_back({"E0/pi below ao^2, worst texel", below.value, 0, options.bounds_tolerance, at_texel(bake, below.texel)});
-  checks.push_back({"E0/pi above ao(2-ao), worst texel", above.value, 0, options.bounds_tolerance, at_texel(bake, above.texel)});
+  checks.push_back({"E0/pi below ao^2, worst texel", below.value, 0, options.bounds_tolerance,
+                    at_texel(bake, below.texel)});
+  checks.push_back({"E0/pi above ao(2-ao), worst texel", above.value, 0, options.bounds_tolerance,
+                    at_texel(bake, above.texel)});
 }
 
 }  // namespace
@@ -125,8 +132,8 @@ Checks check_bake(const Bake& bake, const BakeCheckOptions& options) {
   check_ranges(bake, checks);
   if (!bake.visible_fraction.empty() && !bake.irradiance.empty()) check_bounds(bake, options, checks);
   if (options.link_energy) {
-    checks.push_back({"link rows: sum of weights + E0/pi, largest error", options.link_energy->row_sum_error, 0,
-                      kRowSumTolerance, ""});
+    checks.push_back({"link rows: sum of weights + E0/pi, largest error", options.link_energy->row_sum_error,
+                      0, kRowSumTolerance, ""});
     if (options.link_energy->light_over_opening) {
       // Four standard errors, and a thousandth for rays that meet an edge.
       const double error = options.link_energy->light_over_opening_stderr;
@@ -138,8 +145,9 @@ Checks check_bake(const Bake& bake, const BakeCheckOptions& options) {
     double light = 0;
     for (size_t i = 0; i < bake.normals.size(); ++i)
       light += static_cast<double>(bake.irradiance.front()[i]) / kPi / static_cast<double>(bake.normals[i].z);
-    checks.push_back({"texel light over opening (texel quadrature)", light / static_cast<double>(bake.normals.size()), 1,
-                      kForInformation, "shrinks with resolution"});
+    checks.push_back({"texel light over opening (texel quadrature)",
+                      light / static_cast<double>(bake.normals.size()), 1, kForInformation,
+                      "shrinks with resolution"});
   }
   return checks;
 }

@@ -1,5 +1,6 @@
-// Form-factor links as a sparse matrix: row = receiver, column = patch, in compressed sparse rows (CSR). Rows are
-// kept in blocks of equal length, so that threads fill blocks independently and nothing is copied to join them.
+// Form-factor links as a sparse matrix: row = receiver, column = patch, in compressed sparse rows (CSR). Rows
+// are kept in blocks of equal length, so that threads fill blocks independently and nothing is copied to join
+// them.
 #pragma once
 
 #include <cstddef>
@@ -35,7 +36,8 @@ Links make_links(uint32_t rows, uint32_t columns);
 // Appends the next row of a block.
 void append_row(LinkBlock& block, std::span<const Link> row);
 
-// out[i] = Σ_j w_ij · values[j], summed in double in the order stored. values: one per column; out: one per row.
+// out[i] = Σ_j w_ij · values[j], summed in double in the order stored. values: one per column; out: one per
+// row.
 void gather(const Links& links, std::span<const double> values, std::span<double> out);
 
 // Σ_j w_ij of every row, double.

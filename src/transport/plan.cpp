@@ -45,7 +45,8 @@ void add_pilot(const Pilot& pilot, uint32_t count, BakePlan& plan) {
   const double error = 4 * pilot.links.stddev() / std::sqrt(rows);
   plan.rays += static_cast<uint64_t>(std::llround(static_cast<double>(pilot.rays) * scale));
   plan.links += static_cast<uint64_t>(std::llround(pilot.links.mean * count));
-  plan.link_bytes += static_cast<size_t>((pilot.links.mean + error) * count) * kBytesPerLink + size_t{count} * 4;
+  plan.link_bytes +=
+      static_cast<size_t>((pilot.links.mean + error) * count) * kBytesPerLink + size_t{count} * 4;
   plan.trace_cpu_seconds += pilot.cpu_seconds * scale;
 }
 
@@ -55,8 +56,8 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
   const size_t texels = surface.texel_count();
   BakePlan plan;
   plan.surface_bytes = texels * 16 + options.scene_bytes;
-  // α, E₀/π and the bent normal; then every bounce, total and residual as planes, and four vectors of doubles under way
-  // for texels and patches.
+  // α, E₀/π and the bent normal; then every bounce, total and residual as planes, and four vectors of doubles
+  // under way for texels and patches.
   plan.plane_bytes = texels * 20;
   if (options.with_links) {
     const size_t patches = options.patches == Patches::kFacets ? 2 * texels : texels;

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
+#include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -12,24 +13,32 @@
 namespace hemibake {
 namespace {
 
+// Rows given to a tracer at once: neighbours that it may answer together.
+constexpr uint32_t kRowsAtOnce = 1024;
+
 // Traces rows [0, row_count) block by block; store(index, row) keeps what the caller wants of each.
-template <class TraceRow, class Store>
-TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, const TraceRow& trace_row,
+template <class TraceRows, class Store>
+TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, const TraceRows& trace_rows,
                           const Store& store) {
   const size_t block_count = (row_count + Links::kRowsPerBlock - 1) / Links::kRowsPerBlock;
   std::vector<TracerCounts> counts(block_count);
   parallel_for(block_count, 1, [&](size_t first_block, size_t last_block) {
-    Row row;
+    std::vector<Row> rows(kRowsAtOnce);
     for (size_t b = first_block; b < last_block; ++b) {
       const uint32_t begin = static_cast<uint32_t>(b) * Links::kRowsPerBlock;
       const uint32_t end = std::min(row_count, begin + Links::kRowsPerBlock);
-      for (uint32_t index = begin; index < end; ++index) {
-        trace_row(index, row, counts[b]);
-        // Up to 2: the march with published weights in a narrow cone.
-        if (!(row.direct_over_pi >= 0 && row.direct_over_pi <= 2))
-          throw std::logic_error(fmt::format("row {}: E0/pi is {}, expected 0..2", index, row.direct_over_pi));
-        store(index, row);
-        if (links != nullptr) append_row(links->blocks[b], row.links);
+      for (uint32_t first = begin; first < end; first += kRowsAtOnce) {
+        const std::span<Row> some(rows.data(), std::min(kRowsAtOnce, end - first));
+        trace_rows(first, some, counts[b]);
+        for (uint32_t i = 0; i < some.size(); ++i) {
+          const Row& row = some[i];
+          // Up to 2: the march with published weights in a narrow cone.
+          if (!(row.direct_over_pi >= 0 && row.direct_over_pi <= 2))
+            throw std::logic_error(
+                fmt::format("row {}: E0/pi is {}, expected 0..2", first + i, row.direct_over_pi));
+          store(first + i, row);
+          if (links != nullptr) append_row(links->blocks[b], row.links);
+        }
       }
       if (links != nullptr) {
         links->blocks[b].patches.shrink_to_fit();
@@ -66,7 +75,9 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
   if (with_links) seen.gather = make_links(texels, tracer.patch_count());
   seen.counts = trace_blocks(
       texels, with_links ? &seen.gather : nullptr, progress,
-      [&](uint32_t texel, Row& row, TracerCounts& counts) { tracer.trace_texel(texel, with_links, row, counts); },
+      [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
+        tracer.trace_texels(first, with_links, rows, counts);
+      },
       [&](uint32_t texel, const Row& row) {
         seen.visible_fraction[texel] = static_cast<float>(row.visible_fraction);
         seen.direct_over_pi[texel] = static_cast<float>(row.direct_over_pi);
@@ -78,7 +89,9 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
   seen.patch_direct_over_pi.resize(tracer.patch_count());
   const TracerCounts of_patches = trace_blocks(
       tracer.patch_count(), &seen.patches, progress,
-      [&](uint32_t patch, Row& row, TracerCounts& counts) { tracer.trace_patch(patch, true, row, counts); },
+      [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
+        tracer.trace_patches(first, true, rows, counts);
+      },
       [&](uint32_t patch, const Row& row) {
         seen.patch_direct_over_pi[patch] = static_cast<float>(row.direct_over_pi);
       });

@@ -12,11 +12,11 @@ namespace hemibake {
 
 // What the surface sees before any light is bounced.
 struct Visibility {
-  Grid<float> visible_fraction;      // α per texel
-  Grid<float> direct_over_pi;        // E₀/π per texel
-  Grid<glm::vec3> bent_normals;      // per texel, unit
-  Links gather;                      // texel × patch; empty where links were not asked for
-  Links patches;                     // patch × patch; empty where patches are texels: `gather` is the same matrix
+  Grid<float> visible_fraction;  // α per texel
+  Grid<float> direct_over_pi;    // E₀/π per texel
+  Grid<glm::vec3> bent_normals;  // per texel, unit
+  Links gather;                  // texel × patch; empty where links were not asked for
+  Links patches;  // patch × patch; empty where patches are texels: `gather` is the same matrix
   std::vector<float> patch_direct_over_pi;  // E₀/π per patch; empty where patches are texels or without links
   TracerCounts counts;
 
@@ -26,8 +26,8 @@ struct Visibility {
   }
 };
 
-// width × height: of the map the tracer was made for. Links are built only if `with_links`. The same bytes at any
-// thread count. Throws Interrupted between blocks of rows.
+// width × height: of the map the tracer was made for. Links are built only if `with_links`. The same bytes at
+// any thread count. Throws Interrupted between blocks of rows.
 Visibility trace_surface(const Tracer& tracer, int width, int height, Patches patches, bool with_links);
 
 }  // namespace hemibake

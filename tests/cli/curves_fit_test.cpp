@@ -125,7 +125,7 @@ TEST_F(CurvesAndFit, PathsFailBeforeTheWork) {
   expect_failure("fit c.csv -o none/f.json", 2, "none/f.json: could not write: No such file or directory");
   expect_failure("fit none.csv -o f.json", 2, "none.csv: could not read: No such file or directory");
   expect_failure("curves none.exr -o c.txt", 2, "c.txt: cannot write '.txt' files, expected .csv");
-  expect_failure("curves c.csv -o d.csv --bins 0", 2, "--bins: Value 0 not in range 1 to 65536");
+  expect_failure("curves c.csv -o d.csv --bins 0", 2, "--bins: '0', expected a whole number from 1 to 65536");
 }
 
 }  // namespace

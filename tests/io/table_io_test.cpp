@@ -108,7 +108,7 @@ TEST_F(Csv, FullDisk) {
   EXPECT_EQ(disk.count(), 0u);
 }
 
-TEST(PublishedCurves, AreRead) {
+TEST(CsvOfThePublishedExperiment, IsRead) {
   const std::filesystem::path path = HEMIBAKE_REFERENCE_DIR "/published_curves.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not there";
   const Table table = read_csv(path);

@@ -66,8 +66,10 @@ TEST(Directions, WeightsMakeOpenGroundWhole) {
 TEST(Directions, MomentsOfTheCosine) {
   constexpr int kCount = 1024;
   double uniform_mean = 0, cosine_mean = 0;
-  for (const auto& d : make_directions(DirectionSet::kUniform, kCount, 180)) uniform_mean += d.uniform_weight * static_cast<double>(d.local.z);
-  for (const auto& d : make_directions(DirectionSet::kCosine, kCount, 180)) cosine_mean += d.cosine_weight * static_cast<double>(d.local.z);
+  for (const auto& d : make_directions(DirectionSet::kUniform, kCount, 180))
+    uniform_mean += d.uniform_weight * static_cast<double>(d.local.z);
+  for (const auto& d : make_directions(DirectionSet::kCosine, kCount, 180))
+    cosine_mean += d.cosine_weight * static_cast<double>(d.local.z);
   EXPECT_NEAR(uniform_mean, 0.5, 1e-6);
   EXPECT_NEAR(cosine_mean, 2.0 / 3, 1.0 / kCount);
 }

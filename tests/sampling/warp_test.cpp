@@ -15,7 +15,9 @@ namespace {
 
 constexpr double kNarrowCone = 0.5;  // cosine of 60°
 
-glm::dvec2 random_point(uint64_t i) { return {unit_interval(mix_bits(1, 0, i)), unit_interval(mix_bits(1, 1, i))}; }
+glm::dvec2 random_point(uint64_t i) {
+  return {unit_interval(mix_bits(1, 0, i)), unit_interval(mix_bits(1, 1, i))};
+}
 
 TEST(Warp, CornersOfTheSquare) {
   EXPECT_DOUBLE_EQ(sample_uniform_hemisphere({0, 0}).z, 1);
@@ -34,7 +36,8 @@ TEST(Warp, InversesGiveTheSquareBack) {
   for (uint64_t i = 0; i < 1000; ++i) {
     const glm::dvec2 u = random_point(i);
     for (const double cos_max : {0.0, kNarrowCone}) {
-      const glm::dvec3 uniform = sample_uniform_hemisphere(u, cos_max), cosine = sample_cosine_hemisphere(u, cos_max);
+      const glm::dvec3 uniform = sample_uniform_hemisphere(u, cos_max),
+                       cosine = sample_cosine_hemisphere(u, cos_max);
       EXPECT_NEAR(glm::length(uniform), 1, 1e-14);
       EXPECT_NEAR(glm::length(cosine), 1, 1e-14);
       EXPECT_LT(glm::length(invert_uniform_hemisphere(uniform, cos_max) - u), 1e-9);
@@ -44,10 +47,13 @@ TEST(Warp, InversesGiveTheSquareBack) {
   }
 }
 
-// χ² over 8 × 8 cells (equal in u by construction of `cell_of`) whose expected share `share` integrates the pdf.
-double chi_squared(const std::function<int(glm::dvec2)>& cell_of, const std::vector<double>& share, int samples) {
+// χ² over 8 × 8 cells (equal in u by construction of `cell_of`) whose expected share `share` integrates the
+// pdf.
+double chi_squared(const std::function<int(glm::dvec2)>& cell_of, const std::vector<double>& share,
+                   int samples) {
   std::vector<double> counts(share.size(), 0.0);
-  for (int i = 0; i < samples; ++i) ++counts[static_cast<size_t>(cell_of(random_point(static_cast<uint64_t>(i))))];
+  for (int i = 0; i < samples; ++i)
+    ++counts[static_cast<size_t>(cell_of(random_point(static_cast<uint64_t>(i))))];
   double chi2 = 0;
   for (size_t c = 0; c < share.size(); ++c) {
     const double expected = share[c] * samples;
@@ -57,8 +63,8 @@ double chi_squared(const std::function<int(glm::dvec2)>& cell_of, const std::vec
 }
 
 // Cells of equal θ and φ; their shares are ∫ pdf sinθ dθ dφ by the midpoint rule.
-void expect_density(const std::function<glm::dvec3(glm::dvec2)>& sample, const std::function<double(double)>& pdf,
-                    double theta_max) {
+void expect_density(const std::function<glm::dvec3(glm::dvec2)>& sample,
+                    const std::function<double(double)>& pdf, double theta_max) {
   constexpr int kSide = 8, kSteps = 4000, kSamples = 100000;
   std::vector<double> share(kSide * kSide);
   for (int t = 0; t < kSide; ++t) {
@@ -74,7 +80,8 @@ void expect_density(const std::function<glm::dvec3(glm::dvec2)>& sample, const s
     const glm::dvec3 d = sample(u);
     const double azimuth = std::atan2(d.y, d.x);
     const int t = std::min(kSide - 1, static_cast<int>(std::acos(d.z) / theta_max * kSide));
-    const int p = std::min(kSide - 1, static_cast<int>((azimuth < 0 ? azimuth + 2 * kPi : azimuth) / (2 * kPi) * kSide));
+    const int p = std::min(kSide - 1,
+                           static_cast<int>((azimuth < 0 ? azimuth + 2 * kPi : azimuth) / (2 * kPi) * kSide));
     return t * kSide + p;
   };
   // 99.9 % quantile of χ² with 63 degrees of freedom.
@@ -109,7 +116,8 @@ TEST(Warp, TrianglesAreFilledEvenly) {
       }
   ASSERT_EQ(share.size(), 16u);
   // 99.9 % quantile of χ² with 15 degrees of freedom.
-  EXPECT_LT(chi_squared([&](glm::dvec2 u) { return index[static_cast<size_t>(cell_of(u))]; }, share, 100000), 37.7);
+  EXPECT_LT(chi_squared([&](glm::dvec2 u) { return index[static_cast<size_t>(cell_of(u))]; }, share, 100000),
+            37.7);
 }
 
 }  // namespace

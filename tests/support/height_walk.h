@@ -1,5 +1,5 @@
-// An independent judge of rays on a height map: a walk in double precision over the triangles a ray passes above, one
-// after another, without any tree. Slow and simple.
+// An independent judge of rays on a height map: a walk in double precision over the triangles a ray passes
+// above, one after another, without any tree. Slow and simple.
 #pragma once
 
 #include <algorithm>
@@ -48,14 +48,16 @@ inline std::optional<WalkHit> walk_ray(const Surface& surface, glm::dvec3 start,
     const double cell_x = std::floor(x), cell_y = std::floor(y);
     const int i = wrap_index(static_cast<int>(cell_x), surface.width());
     const int j = wrap_index(static_cast<int>(cell_y), surface.height());
-    const uint32_t facet = 2 * static_cast<uint32_t>(surface.heights_m.index(i, j)) + (x - cell_x + y - cell_y > 1 ? 1 : 0);
+    const uint32_t facet =
+        2 * static_cast<uint32_t>(surface.heights_m.index(i, j)) + (x - cell_x + y - cell_y > 1 ? 1 : 0);
     const auto corners = facet_positions_texels(surface, facet);
     const double leg = facet % 2 == 0 ? 1 : -1;
     const double base_x = cell_x + (facet % 2), base_y = cell_y + (facet % 2);
     const auto gap = [&](double s) {
       const double px = start.x + s * direction.x, py = start.y + s * direction.y;
       return start.z + s * direction.z -
-             (corners[0].z + leg * ((corners[1].z - corners[0].z) * (px - base_x) + (corners[2].z - corners[0].z) * (py - base_y)));
+             (corners[0].z + leg * ((corners[1].z - corners[0].z) * (px - base_x) +
+                                    (corners[2].z - corners[0].z) * (py - base_y)));
     };
     const double gap_begin = gap(t), gap_end = gap(end);
     if (gap_begin < 0) return WalkHit{facet, t};

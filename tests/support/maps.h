@@ -10,12 +10,14 @@ namespace hemibake {
 // Every height an independent random number: as rough as a map can be.
 inline Surface white_noise_surface(int width, int height, double amplitude_m, Edge edge = Edge::kWrap) {
   Grid<float> heights(width, height);
-  for (size_t i = 0; i < heights.size(); ++i) heights[i] = static_cast<float>(unit_interval(mix_bits(7, 7, i)));
+  for (size_t i = 0; i < heights.size(); ++i)
+    heights[i] = static_cast<float>(unit_interval(mix_bits(7, 7, i)));
   return make_surface(std::move(heights), 1, amplitude_m, edge);
 }
 
-inline Surface synthetic_surface(SyntheticKind kind, int width, int height, std::optional<double> amplitude_m = {},
-                                 std::optional<double> angle_rad = {}, Edge edge = Edge::kWrap) {
+inline Surface synthetic_surface(SyntheticKind kind, int width, int height,
+                                 std::optional<double> amplitude_m = {}, std::optional<double> angle_rad = {},
+                                 Edge edge = Edge::kWrap) {
   SyntheticOptions options;
   options.width = width;
   options.height = height;

@@ -40,7 +40,8 @@ void expect_agreement_with_walk(const Surface& surface, uint32_t texel_step) {
   int compared = 0, different = 0;
   double worst_distance = 0;
   for (uint32_t texel = 0; texel < surface.texel_count(); texel += texel_step) {
-    const glm::dvec3 start(texel % static_cast<uint32_t>(surface.width()), texel / static_cast<uint32_t>(surface.width()),
+    const glm::dvec3 start(texel % static_cast<uint32_t>(surface.width()),
+                           texel / static_cast<uint32_t>(surface.width()),
                            surface.heights_m[texel] / surface.texel_size_m + lift);
     for (const RayRecord& ray : tracer->replay_texel(texel)) {
       const auto walked = walk_ray(surface, start, ray.direction);
@@ -48,7 +49,8 @@ void expect_agreement_with_walk(const Surface& surface, uint32_t texel_step) {
       if (walked.has_value() != ray.hit || (ray.hit && walked->facet != ray.facet)) {
         ++different;
       } else if (ray.hit) {
-        worst_distance = std::max(worst_distance, std::abs(ray.distance_m / surface.texel_size_m - walked->distance_texels));
+        worst_distance = std::max(worst_distance,
+                                  std::abs(ray.distance_m / surface.texel_size_m - walked->distance_texels));
       }
     }
   }
@@ -58,13 +60,17 @@ void expect_agreement_with_walk(const Surface& surface, uint32_t texel_step) {
   EXPECT_LT(worst_distance, 0.1);
 }
 
-TEST(EmbreeTracer, AgreesWithWalkOnRoughMap) { expect_agreement_with_walk(white_noise_surface(96, 80, 0.2), 7); }
+TEST(EmbreeTracer, AgreesWithWalkOnRoughMap) {
+  expect_agreement_with_walk(white_noise_surface(96, 80, 0.2), 7);
+}
 
 TEST(EmbreeTracer, AgreesWithWalkOnSmoothMapAcrossManyTiles) {
   expect_agreement_with_walk(synthetic_surface(SyntheticKind::kNoise, 48, 48, 0.05), 5);
 }
 
-TEST(EmbreeTracer, AgreesWithWalkOnSmallNarrowMap) { expect_agreement_with_walk(white_noise_surface(200, 3, 0.05), 1); }
+TEST(EmbreeTracer, AgreesWithWalkOnSmallNarrowMap) {
+  expect_agreement_with_walk(white_noise_surface(200, 3, 0.05), 1);
+}
 
 TEST(EmbreeTracer, FlatGroundIsExactlyOpen) {
   for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
@@ -115,8 +121,8 @@ TEST(EmbreeTracer, FacetsNeverSeeThemselves) {
   }
 }
 
-// A map shifted round by some texels is the same endless surface: with one ray set for all (the rotation depends on
-// the texel's number, so compare averages over rotations) the seam must not show.
+// A map shifted round by some texels is the same endless surface: with one ray set for all (the rotation
+// depends on the texel's number, so compare averages over rotations) the seam must not show.
 TEST(EmbreeTracer, NoSeam) {
   const Surface surface = synthetic_surface(SyntheticKind::kNoise, 40, 40, 0.3);
   Surface shifted = surface;
@@ -126,7 +132,8 @@ TEST(EmbreeTracer, NoSeam) {
       shifted.normals((x + 20) % 40, (y + 20) % 40) = surface.normals(x, y);
     }
   constexpr int kRays = 4096;
-  const auto tracer = make_embree_tracer(surface, rays(kRays)), other = make_embree_tracer(shifted, rays(kRays));
+  const auto tracer = make_embree_tracer(surface, rays(kRays)),
+             other = make_embree_tracer(shifted, rays(kRays));
   Row row, other_row;
   TracerCounts counts;
   for (int x = 0; x < 40; ++x) {
@@ -161,7 +168,8 @@ TEST(EmbreeTracer, NormalsFromAMapTiltTheHemisphere) {
   const double tilt = kPi / 6;
   for (auto& normal : surface.normals.values) normal = glm::vec3(std::sin(tilt), 0, std::cos(tilt));
   const Row row = trace(*make_embree_tracer(surface, rays(4096)), 9);
-  // A hemisphere tilted by t over flat ground: 1 − t/π of its directions and (1 + cos t)/2 of its cosine are sky.
+  // A hemisphere tilted by t over flat ground: 1 − t/π of its directions and (1 + cos t)/2 of its cosine are
+  // sky.
   EXPECT_NEAR(row.visible_fraction, 1 - tilt / kPi, 2 * std::pow(4096, -0.75));
   EXPECT_NEAR(row.direct_over_pi, (1 + std::cos(tilt)) / 2, 2 * std::pow(4096, -0.75));
 }
@@ -198,7 +206,8 @@ TEST(EmbreeTracer, LowReliefIsNotLost) {
     Row row;
     TracerCounts counts;
     double sum = 0;
-    // Facet rows: cosine-weighted light that is blocked is of second order in the slope; count rays by solid angle.
+    // Facet rows: cosine-weighted light that is blocked is of second order in the slope; count rays by solid
+    // angle.
     for (uint32_t i = 0; i < surface.texel_count(); ++i) {
       tracer->trace_texel(i, false, row, counts);
       sum += 1 - row.visible_fraction;
@@ -211,8 +220,8 @@ TEST(EmbreeTracer, LowReliefIsNotLost) {
   EXPECT_GT(hidden(white_noise_surface(32, 32, 1e-2)), 1e-2);
 }
 
-// A height field always lets light out: on a rough map no facet may lose rays through the ground, and the facets'
-// light adds up to what falls through the opening.
+// A height field always lets light out: on a rough map no facet may lose rays through the ground, and the
+// facets' light adds up to what falls through the opening.
 TEST(EmbreeTracer, FacetLightAddsUpToTheOpening) {
   const Surface surface = synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.2);
   const auto tracer = make_embree_tracer(surface, rays(256));

@@ -74,32 +74,36 @@ Visibility see(const Surface& surface, Patches patches, int rays) {
   RayOptions options;
   options.rays = rays;
   options.patches = patches;
-  return trace_surface(*make_embree_tracer(surface, options), surface.width(), surface.height(), patches, true);
+  return trace_surface(*make_embree_tracer(surface, options), surface.width(), surface.height(), patches,
+                       true);
 }
 
 // At albedo 1 all light comes back out: π in every texel, whatever the map.
 TEST(Bounces, EnergyIsPiInEveryTexel) {
   BounceOptions options;
   options.converge_tolerance = 1e-5;
-  const Surface maps[] = {synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.2), white_noise_surface(48, 48, 0.05),
-                          synthetic_surface(SyntheticKind::kGroove, 32, 16), synthetic_surface(SyntheticKind::kFlat, 8, 8)};
+  const Surface maps[] = {
+      synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.2), white_noise_surface(48, 48, 0.05),
+      synthetic_surface(SyntheticKind::kGroove, 32, 16), synthetic_surface(SyntheticKind::kFlat, 8, 8)};
   for (const Surface& surface : maps) {
     const Bounces bounces = bounce_light(see(surface, Patches::kFacets, 256), options);
     EXPECT_TRUE(bounces.texels_short.empty());
     for (const float total : bounces.total.values) ASSERT_NEAR(static_cast<double>(total) / kPi, 1, 2e-5);
   }
   for (const SyntheticKind kind : {SyntheticKind::kGroove, SyntheticKind::kFlat}) {
-    const Bounces bounces = bounce_light(see(synthetic_surface(kind, 32, 16), Patches::kTexels, 256), options);
+    const Bounces bounces =
+        bounce_light(see(synthetic_surface(kind, 32, 16), Patches::kTexels, 256), options);
     for (const float total : bounces.total.values) ASSERT_NEAR(static_cast<double>(total) / kPi, 1, 2e-5);
   }
 }
 
-// Σ area · E_{b+1} = Σ area · E_b (1 − E₀/π) over the facets of a tiled map: what hits the surface again is what
-// did not escape (reciprocity of the links, which rays know only on average).
+// Σ area · E_{b+1} = Σ area · E_b (1 − E₀/π) over the facets of a tiled map: what hits the surface again is
+// what did not escape (reciprocity of the links, which rays know only on average).
 TEST(Bounces, LightThatStaysIsLightThatComesBack) {
   const Surface surface = synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.2);
   const Visibility seen = see(surface, Patches::kFacets, 256);
-  std::vector<double> light(seen.patch_direct_over_pi.begin(), seen.patch_direct_over_pi.end()), next(light.size());
+  std::vector<double> light(seen.patch_direct_over_pi.begin(), seen.patch_direct_over_pi.end()),
+      next(light.size());
   for (int bounce = 0; bounce < 4; ++bounce) {
     gather(seen.patches, light, next);
     double stays = 0, comes_back = 0;
@@ -122,7 +126,8 @@ TEST(Bounces, SameBytesAtAnyThreadCount) {
   };
   const Bounces one = run(1), two = run(2);
   set_thread_count(0);
-  for (size_t b = 0; b < one.irradiance.size(); ++b) ASSERT_EQ(one.irradiance[b].values, two.irradiance[b].values);
+  for (size_t b = 0; b < one.irradiance.size(); ++b)
+    ASSERT_EQ(one.irradiance[b].values, two.irradiance[b].values);
   EXPECT_EQ(one.total.values, two.total.values);
 }
 

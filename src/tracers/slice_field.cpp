@@ -1,0 +1,110 @@
+#include "tracers/slice_field.h"
+
+#include <algorithm>
+
+#include "core/parallel.h"
+
+namespace hemibake {
+namespace {
+
+constexpr size_t kRowsPerPiece = 16;
+
+// A quarter of a window's size: windows lose little by it and fit the caches.
+constexpr int kRowShift[kSkipLevels] = {1, 3, 5};
+
+int window_size(int level) { return kSegmentCells * kSkipSegments[level] + 2; }
+
+HeightPlane margined_heights(const Surface& surface, bool wrap) {
+  const int width = surface.width(), height = surface.height();
+  // A crossing may round to one texel before its window; the window of an open map may begin before the map.
+  const int widest = wrap ? 0 : window_size(kSkipLevels - 1);
+  HeightPlane plane;
+  plane.margin_left = 1 + widest + (wrap ? 0 : kSliceLanes);
+  plane.margin_above = 1 + widest;
+  const int right = window_size(0) + 1 + kSliceLanes, below = window_size(0) + 1;
+  const int columns = plane.margin_left + width + right, rows = plane.margin_above + height + below;
+  plane.pitch = static_cast<size_t>(columns);
+  plane.values.resize(plane.pitch * static_cast<size_t>(rows));
+  parallel_for(static_cast<size_t>(rows), kRowsPerPiece, [&](size_t begin, size_t end) {
+    for (size_t row = begin; row < end; ++row) {
+      const int y = static_cast<int>(row) - plane.margin_above;
+      float* values = plane.values.data() + row * plane.pitch;
+      for (int x = -plane.margin_left; x < width + right; ++x) {
+        const bool inside = x >= 0 && y >= 0 && x < width && y < height;
+        const auto height_m = [&] { return surface.heights_m(wrap_index(x, width), wrap_index(y, height)); };
+        // The same rounding to float as Embree's vertices.
+        *values++ = wrap || inside ? static_cast<float>(height_m() / surface.texel_size_m) : kNoHeight;
+      }
+    }
+  });
+  return plane;
+}
+
+// Widens the window of every place of `plane` by `step` texels to the right and downwards.
+void widen(const SliceField& field, int step, HeightPlane& plane) {
+  const size_t pitch = plane.pitch, rows = plane.values.size() / pitch, s = static_cast<size_t>(step);
+  // Beyond the margin a wrapping map starts again (its margins on the left and above are 1); an open one has
+  // nothing.
+  const auto wrapped = [](size_t i, int period) { return (i - 1) % static_cast<size_t>(period) + 1; };
+  std::vector<float> wide(plane.values.size());
+  parallel_for(rows, kRowsPerPiece, [&](size_t begin, size_t end) {
+    for (size_t y = begin; y < end; ++y) {
+      const float* from = plane.values.data() + y * pitch;
+      float* to = wide.data() + y * pitch;
+      const size_t inside = pitch > s ? pitch - s : 0;
+      for (size_t x = 0; x < inside; ++x) to[x] = std::max(from[x], from[x + s]);
+      for (size_t x = inside; x < pitch; ++x)
+        to[x] = field.wrap ? std::max(from[x], from[wrapped(x + s, field.width)]) : from[x];
+    }
+  });
+  parallel_for(rows, kRowsPerPiece, [&](size_t begin, size_t end) {
+    for (size_t y = begin; y < end; ++y) {
+      const size_t other = y + s < rows ? y + s : field.wrap ? wrapped(y + s, field.height) : y;
+      const float *here = wide.data() + y * pitch, *there = wide.data() + other * pitch;
+      float* to = plane.values.data() + y * pitch;
+      for (size_t x = 0; x < pitch; ++x) to[x] = std::max(here[x], there[x]);
+    }
+  });
+}
+
+// 2^shift rows in one.
+HeightPlane merge_rows(const HeightPlane& plane, int shift) {
+  HeightPlane merged;
+  merged.pitch = plane.pitch;
+  merged.margin_left = plane.margin_left;
+  merged.margin_above = plane.margin_above;
+  merged.row_shift = shift;
+  const size_t pitch = plane.pitch, rows = plane.values.size() / pitch;
+  merged.values.assign(((rows - 1) >> shift) * pitch + pitch, kNoHeight);
+  for (size_t y = 0; y < rows; ++y) {
+    const float* from = plane.values.data() + y * pitch;
+    float* to = merged.values.data() + (y >> shift) * pitch;
+    for (size_t x = 0; x < pitch; ++x) to[x] = std::max(to[x], from[x]);
+  }
+  return merged;
+}
+
+}  // namespace
+
+SliceField make_slice_field(const Surface& surface) {
+  SliceField field;
+  field.width = surface.width();
+  field.height = surface.height();
+  field.wrap = surface.edge == Edge::kWrap;
+  field.heights = margined_heights(surface, field.wrap);
+  field.top = *std::max_element(field.heights.values.begin(), field.heights.values.end());
+
+  HeightPlane plane = field.heights;
+  int size = 1;
+  for (size_t level = 0; level < kSkipLevels; ++level) {
+    for (const int wanted = window_size(static_cast<int>(level)); size < wanted;) {
+      const int step = std::min(size, wanted - size);
+      widen(field, step, plane);
+      size += step;
+    }
+    field.tallest[level] = merge_rows(plane, kRowShift[level]);
+  }
+  return field;
+}
+
+}  // namespace hemibake

@@ -1,0 +1,50 @@
+// The heights laid out for slices: with margins, so that a piece of path reads them without asking for the
+// edge, and with the tallest height of square windows, so that a walk skips what lies below its horizon.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "surface/surface.h"
+
+namespace hemibake {
+
+inline constexpr int kSliceLanes = 16;   // receivers of a packet, neighbours along x
+inline constexpr int kSegmentCells = 8;  // a segment of a path spans this along x or y, whichever is longer
+inline constexpr int kSkipLevels = 3;
+inline constexpr int kSkipSegments[kSkipLevels] = {1, 4, 16};  // segments that a window of each level covers
+
+// Height of nothing: lower than every slope asks for, and differences of two of them stay finite.
+inline constexpr float kNoHeight = -1e30f;
+
+// Heights by place. The texel (x, y) stands at index(x, y).
+struct HeightPlane {
+  std::vector<float> values;
+  size_t pitch = 0;
+  int margin_left = 0, margin_above = 0;
+  int row_shift = 0;  // 2^row_shift rows of texels share a row of the plane
+
+  size_t index(int x, int y) const {
+    return static_cast<size_t>((y + margin_above) >> row_shift) * pitch +
+           static_cast<size_t>(x + margin_left);
+  }
+  const float* at(int x, int y) const { return values.data() + index(x, y); }
+};
+
+struct SliceField {
+  int width = 0, height = 0;
+  bool wrap = true;
+  float top = 0;  // height of the highest texel, in texels, as all heights here
+
+  // Any position from -1, -1 on may be followed by a packet and a segment; on an open map also positions
+  // before it from which a window just reaches the map.
+  HeightPlane heights;
+  // [level] at (x, y): at least the tallest corner in x … x + s − 1 and y … y + s − 1, where
+  // s = kSegmentCells · kSkipSegments[level] + 2.
+  std::array<HeightPlane, kSkipLevels> tallest;
+};
+
+SliceField make_slice_field(const Surface& surface);
+
+}  // namespace hemibake

@@ -1,0 +1,358 @@
+#include "tracers/slice_walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "tracers/slice_segments.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "tracers/slice_walk.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// Must come after highway.h.
+#include <hwy/contrib/math/math-inl.h>
+
+#ifndef HEMIBAKE_SLICE_WALK_ONCE
+#define HEMIBAKE_SLICE_WALK_ONCE
+namespace hemibake {
+
+// Slopes: an azimuth ends where no more than this can be gained.
+constexpr float kHorizonTolerance = 1e-4f;
+// The same below a slope of zero, where a wrapping map blocks everything and only the links are still to be
+// found.
+constexpr float kLinkTolerance = 1e-3f;
+// Longer sides of the map after which a walk ends in any case.
+constexpr double kFarthestMaps = 1e4;
+// The slope of lanes that are not walked: above every other.
+constexpr float kClosed = 1e30f;
+
+// i modulo n for i not far from 0..n-1.
+inline int wrap_near(int i, int n) {
+  if (i < 0) i += n;
+  while (i >= n) i -= n;
+  return i;
+}
+
+}  // namespace hemibake
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace hemibake {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F = hn::CappedTag<float, kSliceLanes>;
+using V = hn::Vec<F>;
+constexpr F kF;
+constexpr size_t kWidth = hn::MaxLanes(F());
+constexpr size_t kParts = kSliceLanes / kWidth;
+
+// One number per lane of a packet.
+struct Vectors {
+  V part[kParts];
+};
+
+HWY_INLINE V broadcast(double value) { return hn::Set(kF, static_cast<float>(value)); }
+
+HWY_INLINE Vectors load(const LaneArray<float>& values) {
+  Vectors v;
+  for (size_t p = 0; p < kParts; ++p) v.part[p] = hn::LoadU(kF, values.data() + p * kWidth);
+  return v;
+}
+
+// a · x + b · y
+HWY_INLINE Vectors along(const LaneArray<float>& a, const LaneArray<float>& b, double x, double y) {
+  const Vectors va = load(a), vb = load(b);
+  Vectors v;
+  for (size_t p = 0; p < kParts; ++p)
+    v.part[p] = hn::MulAdd(va.part[p], broadcast(x), hn::Mul(vb.part[p], broadcast(y)));
+  return v;
+}
+
+// ∫ over the elevations θ from slope m to the zenith of cos²θ and of sinθ cosθ.
+struct SkyDirection {
+  V horizontal, vertical;
+};
+
+HWY_INLINE SkyDirection direction_above(V m) {
+  const V half = hn::Set(kF, 0.5f), quarter_turn = hn::Set(kF, 0.785398163f);
+  const V cos2 = hn::Div(hn::Set(kF, 1.0f), hn::MulAdd(m, m, hn::Set(kF, 1.0f)));
+  return {hn::NegMulAdd(half, hn::MulAdd(m, cos2, hn::Atan(kF, m)), quarter_turn), hn::Mul(half, cos2)};
+}
+
+// The same of cosθ: 1 − sinθ, without cancellation near the zenith.
+HWY_INLINE V uniform_above(V m) {
+  const V one = hn::Set(kF, 1.0f), cos2 = hn::Div(one, hn::MulAdd(m, m, one));
+  const V sine = hn::Mul(hn::Abs(m), hn::Sqrt(cos2));
+  return hn::IfThenElse(hn::Lt(m, hn::Zero(kF)), hn::Add(one, sine), hn::Div(cos2, hn::Add(one, sine)));
+}
+
+// The same of the cosine to a normal whose plane has the slope `rim` in this slice, over normal.z.
+HWY_INLINE V cosine_above(V m, V rim) {
+  const SkyDirection sky = direction_above(m);
+  return hn::NegMulAdd(rim, sky.horizontal, sky.vertical);
+}
+
+HWY_INLINE void add_lanes(V v, double* sum) {
+  alignas(64) float values[kWidth];
+  hn::Store(v, kF, values);
+  for (size_t i = 0; i < kWidth; ++i) sum[i] += static_cast<double>(values[i]);
+}
+
+HWY_INLINE void add_sky(const Vectors& slope, const glm::dvec2& direction, SliceSums& sums) {
+  for (size_t p = 0; p < kParts; ++p) {
+    const size_t lane = p * kWidth;
+    const SkyDirection sky = direction_above(slope.part[p]);
+    add_lanes(uniform_above(slope.part[p]), sums.uniform.data() + lane);
+    add_lanes(hn::Mul(sky.horizontal, broadcast(direction.x)), sums.x.data() + lane);
+    add_lanes(hn::Mul(sky.horizontal, broadcast(direction.y)), sums.y.data() + lane);
+    add_lanes(sky.vertical, sums.z.data() + lane);
+  }
+}
+
+// Where the lanes of a packet start, and what they have met.
+struct Lanes {
+  Vectors base, rise;  // the start is `rise` above `base`
+  Vectors to_top;      // from the start to the highest texel
+  Vectors rim;         // lowest slope
+  Vectors slope;       // of the horizon so far
+  Vectors above;       // only with stretches: cosine_above the horizon so far
+};
+
+// One path at a time, for packet after packet.
+class PathWalk {
+ public:
+  PathWalk(const SliceField& field, const SlicePaths& paths, const WalkOptions& options)
+      : field_(field), options_(options), segments_(field, paths) {
+    const double farthest = kFarthestMaps * std::max({field.width, field.height, kSegmentCells});
+    last_segment_ = static_cast<int>(std::min(farthest, options.max_distance) / kSegmentCells);
+    blocks_below_ = field.wrap && std::isinf(options.max_distance);
+  }
+
+  void begin_path(size_t index) {
+    segments_.begin_path(index);
+    inverse_step_ = static_cast<float>(1 / segments_.path().step);
+  }
+
+  // Adds what the packet sees along the path.
+  template <bool kStretches>
+  void walk(const SlicePacket& packet, uint32_t azimuth, PacketView& view) {
+    const SlicePath& path = segments_.path();
+    Lanes lanes = start(packet);
+    add_sky(lanes.rim, path.direction, view.hemisphere);
+    for (int segment = 0;;) {
+      if (!reaches_map(place(packet, segments_.windows(segment).corner[0])) || segment > last_segment_) break;
+      if (segment > 0) {
+        if (ended(lanes, segment)) {
+          count_cut_short(lanes, segment, view);
+          break;
+        }
+        const int skipped = segments_to_skip(packet, lanes, segment);
+        segment += skipped;
+        if (skipped > 0) continue;
+      }
+      cross_segment<kStretches>(packet, azimuth, segment, lanes, view);
+      ++segment;
+    }
+    if (blocks_below_)
+      for (V& slope : lanes.slope.part) slope = hn::Max(slope, hn::Zero(kF));
+    add_sky(lanes.slope, path.direction, view.sky);
+  }
+
+ private:
+  Lanes start(const SlicePacket& packet) const;
+  bool ended(const Lanes& lanes, int segment) const;
+  void count_cut_short(const Lanes& lanes, int segment, PacketView& view) const;
+  int segments_to_skip(const SlicePacket& packet, const Lanes& lanes, int segment);
+  template <bool kStretches>
+  void cross_segment(const SlicePacket& packet, uint32_t azimuth, int segment, Lanes& lanes,
+                     PacketView& view);
+  uint32_t facet_at(glm::ivec2 corner, const FacetBefore& facet, int lane) const;
+
+  float inverse_distance(int segment) const { return inverse_step_ / static_cast<float>(segment); }
+  glm::ivec2 place(const SlicePacket& packet, glm::ivec2 corner) const {
+    int x = packet.x + corner.x, y = packet.y + corner.y;
+    if (field_.wrap && x >= field_.width) x -= field_.width;
+    if (field_.wrap && y >= field_.height) y -= field_.height;
+    return {x, y};
+  }
+  bool reaches_map(const glm::ivec2& corner) const {
+    return field_.wrap || (corner.x < field_.width && corner.y < field_.height &&
+                           corner.x + kSliceLanes + kSegmentCells >= 0 && corner.y + kSegmentCells + 1 >= 0);
+  }
+
+  const SliceField& field_;
+  WalkOptions options_;
+  SegmentSource segments_;
+  float inverse_step_ = 0;
+  int last_segment_;
+  bool blocks_below_;  // a map that repeats for ever meets whatever goes down
+};
+
+HWY_INLINE Lanes PathWalk::start(const SlicePacket& packet) const {
+  const SlicePath& path = segments_.path();
+  const auto corner = static_cast<double>(packet.corner);
+  Lanes lanes;
+  lanes.base = load(packet.base);
+  lanes.rise = along(packet.plane_x, packet.plane_y, path.origin.x - corner, path.origin.y - corner);
+  lanes.rim = along(packet.rim_x, packet.rim_y, path.direction.x, path.direction.y);
+  const V top = hn::Set(kF, field_.top);
+  for (size_t p = 0; p < kParts; ++p) {
+    lanes.to_top.part[p] = hn::Sub(hn::Sub(top, lanes.base.part[p]), lanes.rise.part[p]);
+    const int walked = std::clamp(packet.lanes - static_cast<int>(p * kWidth), 0, static_cast<int>(kWidth));
+    V slope =
+        hn::IfThenElse(hn::FirstN(kF, static_cast<size_t>(walked)), lanes.rim.part[p], hn::Set(kF, kClosed));
+    if (blocks_below_ && !options_.with_stretches) slope = hn::Max(slope, hn::Zero(kF));
+    lanes.slope.part[p] = slope;
+    if (options_.with_stretches) lanes.above.part[p] = cosine_above(slope, lanes.rim.part[p]);
+  }
+  return lanes;
+}
+
+// Whether no lane can gain more than the tolerance from `segment` on.
+HWY_INLINE bool PathWalk::ended(const Lanes& lanes, int segment) const {
+  const V near = hn::Set(kF, inverse_distance(segment)), low = hn::Set(kF, -kLinkTolerance);
+  bool all = true;
+  for (size_t p = 0; p < kParts; ++p) {
+    V slope = lanes.slope.part[p];
+    if (blocks_below_) slope = hn::IfThenElse(hn::Ge(slope, low), hn::Max(slope, hn::Zero(kF)), slope);
+    const V enough = hn::Add(slope, hn::Set(kF, kHorizonTolerance));
+    all = all && hn::AllTrue(kF, hn::Le(hn::Mul(lanes.to_top.part[p], near), enough));
+  }
+  return all;
+}
+
+HWY_INLINE void PathWalk::count_cut_short(const Lanes& lanes, int segment, PacketView& view) const {
+  const V near = hn::Set(kF, inverse_distance(segment));
+  for (size_t p = 0; p < kParts; ++p) {
+    uint8_t bits[8] = {};
+    hn::StoreMaskBits(kF, hn::Gt(hn::Mul(lanes.to_top.part[p], near), lanes.slope.part[p]), bits);
+    for (size_t lane = 0; lane < kWidth; ++lane)
+      view.cut_short[p * kWidth + lane] += (bits[lane / 8] >> (lane % 8)) & 1;
+  }
+}
+
+// How many segments from `segment` on stay below every lane's horizon, as far as one window tells.
+HWY_INLINE int PathWalk::segments_to_skip(const SlicePacket& packet, const Lanes& lanes, int segment) {
+  const SegmentWindows& window = segments_.windows(segment);
+  const V near = hn::Set(kF, inverse_distance(segment));
+  for (int level = kSkipLevels - 1; level >= 0; --level) {
+    const int segments = kSkipSegments[level];
+    if (segment % segments != 0) continue;
+    const glm::ivec2 corner = place(packet, window.corner[level]);
+    const float* tallest = field_.tallest[static_cast<size_t>(level)].at(corner.x, corner.y);
+    const V far = hn::Set(kF, inverse_distance(segment + segments));
+    bool below = true;
+    for (size_t p = 0; p < kParts; ++p) {
+      const V tall = hn::LoadU(kF, tallest + p * kWidth);
+      const V rise = hn::Sub(hn::Sub(tall, lanes.base.part[p]), lanes.rise.part[p]);
+      const V steepest = hn::Max(hn::Mul(rise, near), hn::Mul(rise, far));
+      below = below && hn::AllTrue(kF, hn::Le(steepest, lanes.slope.part[p]));
+    }
+    if (below) return segments;
+  }
+  return 0;
+}
+
+template <bool kStretches>
+HWY_INLINE void PathWalk::cross_segment(const SlicePacket& packet, uint32_t azimuth, int segment,
+                                        Lanes& lanes, PacketView& view) {
+  const glm::ivec2 corner = place(packet, segments_.windows(segment).corner[0]);
+  const float* heights = field_.heights.at(corner.x, corner.y);
+  const SegmentView crossed = segments_.crossings(segment);
+  for (size_t i = 0; i < crossed.crossings.size(); ++i) {
+    const Crossing& crossing = crossed.crossings[i];
+    const V fraction = hn::Set(kF, crossing.fraction), inverse = hn::Set(kF, crossing.inverse_distance);
+    for (size_t p = 0; p < kParts; ++p) {
+      const V a = hn::LoadU(kF, heights + crossing.a + p * kWidth);
+      const V b = hn::LoadU(kF, heights + crossing.b + p * kWidth);
+      const V along_edge = hn::MulSub(fraction, hn::Sub(b, a), lanes.rise.part[p]);
+      const V slope = hn::Mul(hn::Add(hn::Sub(a, lanes.base.part[p]), along_edge), inverse);
+      if constexpr (!kStretches) {
+        lanes.slope.part[p] = hn::Max(lanes.slope.part[p], slope);
+        continue;
+      }
+      if (hn::AllTrue(kF, hn::Le(slope, lanes.slope.part[p]))) continue;
+      const V above = cosine_above(slope, lanes.rim.part[p]);
+      // What rounding leaves nothing of is left to the next stretch.
+      const auto seen = hn::And(hn::Gt(slope, lanes.slope.part[p]), hn::Lt(above, lanes.above.part[p]));
+      alignas(64) float low[kWidth], high[kWidth], weight[kWidth];
+      hn::Store(lanes.slope.part[p], kF, low);
+      hn::Store(slope, kF, high);
+      hn::Store(hn::Sub(lanes.above.part[p], above), kF, weight);
+      lanes.slope.part[p] = hn::IfThenElse(seen, slope, lanes.slope.part[p]);
+      lanes.above.part[p] = hn::IfThenElse(seen, above, lanes.above.part[p]);
+      uint8_t bytes[8] = {};
+      hn::StoreMaskBits(kF, seen, bytes);
+      for (uint32_t bits = bytes[0] | static_cast<uint32_t>(bytes[1]) << 8; bits != 0; bits &= bits - 1) {
+        const size_t l = hwy::Num0BitsBelowLS1Bit_Nonzero32(bits), lane = p * kWidth + l;
+        view.stretches[lane].push_back({facet_at(corner, crossed.facets[i], static_cast<int>(lane)),
+                                        weight[l], low[l], high[l], crossing.inverse_distance, azimuth});
+      }
+    }
+  }
+}
+
+HWY_INLINE uint32_t PathWalk::facet_at(glm::ivec2 corner, const FacetBefore& facet, int lane) const {
+  int column = corner.x + facet.column + lane, row = corner.y + facet.row, columns = field_.width;
+  if (field_.wrap) {
+    column = wrap_near(column, field_.width);
+    row = wrap_near(row, field_.height);
+  } else {
+    // A path along the border runs beside the last cells.
+    columns = field_.width - 1;
+    column = std::clamp(column, 0, columns - 1);
+    row = std::clamp(row, 0, field_.height - 2);
+  }
+  const uint32_t cell =
+      static_cast<uint32_t>(row) * static_cast<uint32_t>(columns) + static_cast<uint32_t>(column);
+  return 2 * cell + static_cast<uint32_t>(facet.half);
+}
+
+template <bool kStretches>
+void walk_all(const SliceField& field, const SlicePaths& paths, const WalkOptions& options,
+              std::span<const SlicePacket> packets, std::span<PacketView> views) {
+  // Path after path, so that a path's crossings and the heights it meets stay in the caches.
+  std::vector<size_t> order(packets.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return packets[a].turn < packets[b].turn; });
+  PathWalk walk(field, paths, options);
+  for (int azimuth = 0; azimuth < paths.azimuths; ++azimuth) {
+    int turn = -1;
+    for (const size_t index : order) {
+      if (packets[index].turn != turn) {
+        turn = packets[index].turn;
+        walk.begin_path(paths.path_index(turn, azimuth));
+      }
+      walk.walk<kStretches>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
+    }
+  }
+}
+
+void walk_packets(const SliceField& field, const SlicePaths& paths, const WalkOptions& options,
+                  std::span<const SlicePacket> packets, std::span<PacketView> views) {
+  if (options.with_stretches) {
+    walk_all<true>(field, paths, options, packets, views);
+  } else {
+    walk_all<false>(field, paths, options, packets, views);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace hemibake
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace hemibake {
+
+HWY_EXPORT(walk_packets);
+
+void walk_packets(const SliceField& field, const SlicePaths& paths, const WalkOptions& options,
+                  std::span<const SlicePacket> packets, std::span<PacketView> views) {
+  HWY_DYNAMIC_DISPATCH(walk_packets)(field, paths, options, packets, views);
+}
+
+}  // namespace hemibake
+#endif  // HWY_ONCE

@@ -1,0 +1,61 @@
+// Walks packets of receivers along their paths, with the vector instructions of the machine it runs on.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "tracers/slice_field.h"
+#include "tracers/slice_path.h"
+
+namespace hemibake {
+
+template <class T>
+using LaneArray = std::array<T, kSliceLanes>;
+
+// Receivers side by side: lane l starts in the cell (x + l, y).
+struct SlicePacket {
+  int x = 0, y = 0;
+  int lanes = kSliceLanes;                // the others are not walked
+  int turn = 0;                           // which rotation of the azimuths
+  float corner = 0;                       // of the cell, 0: (x, y), 1: (x + 1, y + 1)
+  LaneArray<float> base{};                // height there, texels
+  LaneArray<float> plane_x{}, plane_y{};  // slopes of the plane through it on which the start lies
+  LaneArray<float> rim_x{}, rim_y{};      // slopes of the plane normal to the receiver's normal
+};
+
+// ∫ over a part of every slice of 1 and of the direction d, in solid angle times azimuths / 2π.
+struct SliceSums {
+  LaneArray<double> uniform{}, x{}, y{}, z{};
+};
+
+// A piece of facet that a receiver sees along one azimuth, between two slopes from its start.
+struct Stretch {
+  uint32_t facet;
+  float weight;            // ∫ cosine to the receiver's normal, over normal.z, as in SliceSums
+  float low, high;         // slopes
+  float inverse_distance;  // 1 / horizontal distance of its end at slope `high`, 1/texels
+  uint32_t azimuth;
+};
+
+// What every lane of a packet sees.
+struct PacketView {
+  SliceSums hemisphere;                       // everything above the plane normal to the receiver's normal
+  SliceSums sky;                              // what of it is sky
+  LaneArray<std::vector<Stretch>> stretches;  // by azimuth, then by distance
+  LaneArray<uint32_t> cut_short{};
+};
+
+struct WalkOptions {
+  bool with_stretches = false;
+  double max_distance =
+      std::numeric_limits<double>::infinity();  // horizontal, texels: no need to go on beyond
+};
+
+// Adds to the views of the packets what they see. Packets near each other are best given together.
+void walk_packets(const SliceField& field, const SlicePaths& paths, const WalkOptions& options,
+                  std::span<const SlicePacket> packets, std::span<PacketView> views);
+
+}  // namespace hemibake
