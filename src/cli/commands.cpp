@@ -12,7 +12,12 @@
 namespace hemibake {
 
 // One per file in cli/.
+CommandBody setup_curves(CLI::App& app);
+CommandBody setup_fit(CLI::App& app);
 CommandBody setup_synth(CLI::App& app);
+CommandBody setup_bake(CLI::App& app);
+CommandBody setup_check(CLI::App& app);
+CommandBody setup_run(CLI::App& app);
 
 namespace {
 
@@ -22,6 +27,11 @@ constexpr int kExitInterrupted = 130;
 
 constexpr std::array kCommands = {
     Command{"synth", "write a synthetic height map", setup_synth},
+    Command{"bake", "trace the light on a height map", setup_bake},
+    Command{"curves", "sort the texels of a bake by AO: mean and spread of every bounce", setup_curves},
+    Command{"fit", "fit models to curves", setup_fit},
+    Command{"check", "check that light is neither made nor lost", setup_check},
+    Command{"run", "bake, curves, fit and check in one go", setup_run},
 };
 
 int fail(int code, const std::string& message) {

@@ -1,12 +1,110 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
+#include "core/constants.h"
+#include "core/error.h"
+#include "io/image_io.h"
+#include "io/output_file.h"
+#include "surface/surface.h"
+#include "surface/synthetic.h"
 
 namespace hemibake {
-CommandBody setup_synth(CLI::App& app) {
-  auto options = std::make_shared<CommonOptions>();
-  add_common_options(app, *options);
-  return [options] { apply_common_options(*options); return 0; };
+namespace {
+
+struct SynthOptions {
+  CommonOptions common;
+  std::string kind;
+  std::filesystem::path output;
+  int width = 512, height = 512;
+  uint64_t seed = 1;
+  std::optional<double> angle_deg;
+};
+
+const SyntheticKindInfo& find_kind(const std::string& name) {
+  return *std::ranges::find(synthetic_kinds(), name, &SyntheticKindInfo::name);
 }
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for (const SyntheticKindInfo& kind : synthetic_kinds()) names.emplace_back(kind.name);
+  return names;
+}
+
+std::string kinds_help() {
+  std::string text = "Kinds:\n";
+  for (const SyntheticKindInfo& kind : synthetic_kinds()) {
+    text += fmt::format("  {:<10}{}", kind.name, kind.description);
+    if (kind.default_angle_deg) text += fmt::format(" [{}]", *kind.default_angle_deg);
+    text += '\n';
+  }
+  return text + "Every map continues without a seam where it repeats.";
+}
+
+// CLI11 takes −1 for 2⁶⁴ − 1.
+std::string refuse_sign(const std::string& text) {
+  return text.starts_with('-') ? text + ", expected a whole number of 0 or more" : "";
+}
+
+int run(const SynthOptions& options) {
+  apply_common_options(options.common);
+  check_output_path(options.output, {".exr", ".png"});
+  const SyntheticKindInfo& kind = find_kind(options.kind);
+  SyntheticOptions map_options{
+      .width = options.width, .height = options.height, .seed = options.seed, .angle_rad = {}};
+  if (options.angle_deg) map_options.angle_rad = *options.angle_deg * kPi / 180;
+
+  const SyntheticMap map = synthesize(kind.kind, map_options);
+  Provenance provenance = make_provenance(command_line(process_arguments()));
+  provenance["recommended_amplitude_m"] = map.recommended_amplitude_m;
+  write_height_map(options.output, map.heights, provenance);
+
+  print_result(options.common,
+               {{"output", options.output.string()},
+                {"kind", kind.name},
+                {"width", options.width},
+                {"height", options.height},
+                {"seed", options.seed},
+                {"recommended_amplitude_m", map.recommended_amplitude_m}},
+               fmt::format("{}: {} {}x{}, for a size of 1 m use --amplitude {}\n", options.output.string(),
+                           kind.name, options.width, options.height, map.recommended_amplitude_m));
+  return 0;
+}
+
+}  // namespace
+
+CommandBody setup_synth(CLI::App& app) {
+  auto options = std::make_shared<SynthOptions>();
+  constexpr int kMaxSide = static_cast<int>(kMaxTexels);
+  app.add_option("KIND", options->kind, "what to make, see below")
+      ->required()
+      ->check(CLI::IsMember(kind_names()));
+  app.add_option("-o,--output", options->output, "height map to write: .exr (float) or .png (16 bit)")
+      ->required()
+      ->option_text("MAP");
+  app.add_option("--width", options->width, fmt::format("texels; width x height at most {}", kMaxTexels))
+      ->check(CLI::Range(1, kMaxSide))
+      ->capture_default_str();
+  app.add_option("--height", options->height, "texels, down the image")
+      ->check(CLI::Range(1, kMaxSide))
+      ->capture_default_str();
+  app.add_option("--seed", options->seed, "another number, another map (bricks, shapes, concrete, noise)")
+      ->check(refuse_sign)
+      ->capture_default_str();
+  app.add_option("--angle", options->angle_deg, "degrees, of bowl and groove; default in brackets below")
+      ->check(CLI::Range(kMinSyntheticAngleDeg, kMaxSyntheticAngleDeg));
+  add_common_options(app, options->common);
+  app.footer(kinds_help());
+  return [options] { return run(*options); };
+}
+
 }  // namespace hemibake

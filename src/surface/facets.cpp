@@ -34,13 +34,16 @@ std::array<glm::dvec3, 3> facet_positions_texels(const Surface& surface, uint32_
 
 glm::dvec3 facet_normal(const Surface& surface, uint32_t facet) {
   const auto p = facet_positions_texels(surface, facet);
-  // The right-angled corner's legs run along x and y, so the plane's slopes are height differences along them.
+  // The right-angled corner's legs run along x and y, so the plane's slopes are height differences along
+  // them.
   const double sign = facet % 2 == 0 ? 1 : -1;
   const double slope_x = sign * (p[1].z - p[0].z);
   const double slope_y = sign * (p[2].z - p[0].z);
   return glm::normalize(glm::dvec3(-slope_x, -slope_y, 1));
 }
 
-double facet_area_ratio(const Surface& surface, uint32_t facet) { return 1.0 / facet_normal(surface, facet).z; }
+double facet_area_ratio(const Surface& surface, uint32_t facet) {
+  return 1.0 / facet_normal(surface, facet).z;
+}
 
 }  // namespace hemibake

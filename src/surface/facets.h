@@ -1,6 +1,7 @@
-// The triangles of the surface. Every cell between four neighbouring texel centres is cut by the diagonal from
-// (i+1, j) to (i, j+1): facet 2c holds the corner (i, j), facet 2c+1 the corner (i+1, j+1), where c numbers the
-// cells row by row. A wrapping map has a cell per texel, an open one a cell less in each direction.
+// The triangles of the surface. Every cell between four neighbouring texel centres is cut by the diagonal
+// from (i+1, j) to (i, j+1): facet 2c holds the corner (i, j), facet 2c+1 the corner (i+1, j+1), where c
+// numbers the cells row by row. A wrapping map has a cell per texel, an open one a cell less in each
+// direction.
 #pragma once
 
 #include <array>

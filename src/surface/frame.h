@@ -9,7 +9,9 @@ namespace hemibake {
 struct Frame {
   glm::dvec3 tangent, bitangent, normal;
 
-  glm::dvec3 world_from_tangent(const glm::dvec3& v) const { return v.x * tangent + v.y * bitangent + v.z * normal; }
+  glm::dvec3 world_from_tangent(const glm::dvec3& v) const {
+    return v.x * tangent + v.y * bitangent + v.z * normal;
+  }
 };
 
 // Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017: Frisvad's frame without its pole.

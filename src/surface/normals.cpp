@@ -15,7 +15,8 @@ namespace {
 // Slope of the heights along one axis: index i of n, value(i) in metres.
 template <class Value>
 double central_slope(int i, int n, Edge edge, double texel_size_m, const Value& value) {
-  if (edge == Edge::kWrap) return (value(wrap_index(i + 1, n)) - value(wrap_index(i - 1, n))) / (2 * texel_size_m);
+  if (edge == Edge::kWrap)
+    return (value(wrap_index(i + 1, n)) - value(wrap_index(i - 1, n))) / (2 * texel_size_m);
   const int low = std::max(0, i - 1), high = std::min(n - 1, i + 1);
   return high == low ? 0.0 : (value(high) - value(low)) / ((high - low) * texel_size_m);
 }
@@ -63,12 +64,19 @@ Grid<glm::vec3> decode_normal_map(const Grid<glm::vec3>& encoded, NormalY conven
     const glm::dvec3 n(2 * value.x - 1, sign_y * (2 * value.y - 1), 2 * value.z - 1);
     const double length = glm::length(n);
     if (!std::isfinite(length) || length < 1e-3 || n.z <= 0)
-      throw InputError(fmt::format("normal at texel {},{} is ({}, {}, {}), expected a vector that points up (blue above 0.5)",
-                                   i % static_cast<size_t>(encoded.width), i / static_cast<size_t>(encoded.width),
-                                   n.x, n.y, n.z));
+      throw InputError(fmt::format(
+          "normal at texel {},{} is ({}, {}, {}), expected a vector that points up (blue above 0.5)",
+          i % static_cast<size_t>(encoded.width), i / static_cast<size_t>(encoded.width), n.x, n.y, n.z));
     normals[i] = glm::vec3(n / length);
   }
   return normals;
+}
+
+Grid<float> normal_map_lengths(const Grid<glm::vec3>& encoded) {
+  Grid<float> lengths(encoded.width, encoded.height);
+  for (size_t i = 0; i < encoded.size(); ++i)
+    lengths[i] = static_cast<float>(glm::length(2.0 * glm::dvec3(encoded[i]) - 1.0));
+  return lengths;
 }
 
 }  // namespace hemibake

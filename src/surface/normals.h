@@ -8,18 +8,23 @@
 
 namespace hemibake {
 
-// Which way the green channel of a normal map grows: `kUp` against the image rows (OpenGL), `kDown` along them
-// (DirectX).
+// Which way the green channel of a normal map grows: `kUp` against the image rows (OpenGL), `kDown` along
+// them (DirectX).
 enum class NormalY { kUp, kDown };
 
-// Central differences of the heights, wrap-aware; one-sided at open edges. Reads heights, texel size and edge.
+// Central differences of the heights, wrap-aware; one-sided at open edges. Reads heights, texel size and
+// edge.
 Grid<glm::vec3> central_difference_normals(const Surface& surface);
 
-// Mean of the normals of the facets around each texel, weighted by the facet's angle there (Thürmer & Wüthrich 1998).
+// Mean of the normals of the facets around each texel, weighted by the facet's angle there (Thürmer &
+// Wüthrich 1998).
 Grid<glm::vec3> angle_weighted_normals(const Surface& surface);
 
-// encoded: channel values 0..1, n = 2·value − 1, renormalised; y as `convention` says. Throws InputError naming the
-// texel where a value is not finite, the length is below 10⁻³ or the normal does not point up.
+// encoded: channel values 0..1, n = 2·value − 1, renormalised; y as `convention` says. Throws InputError
+// naming the texel where a value is not finite, the length is below 10⁻³ or the normal does not point up.
 Grid<glm::vec3> decode_normal_map(const Grid<glm::vec3>& encoded, NormalY convention);
+
+// |2·value − 1| of each texel: what decode_normal_map divides by.
+Grid<float> normal_map_lengths(const Grid<glm::vec3>& encoded);
 
 }  // namespace hemibake

@@ -9,43 +9,53 @@
 #include "surface/normals.h"
 
 namespace hemibake {
+namespace {
+
+constexpr double kMinSizeM = 1e-12, kMaxSizeM = 1e12;
+// Squares of slopes, and the z of a normal, stay far inside the range of a float.
+constexpr double kMaxRangeTexels = 1e12;
+
+}  // namespace
 
 Surface make_surface(Grid<float> heights, double size_m, double amplitude_m, Edge edge) {
   if (heights.empty()) throw InputError("the map has no texels, expected at least one");
   if (heights.size() > kMaxTexels)
     throw InputError(fmt::format("the map has {} texels, expected at most {}", heights.size(), kMaxTexels));
   if (edge == Edge::kOpen && (heights.width < 2 || heights.height < 2))
-    throw InputError(fmt::format("{}x{} texels span no surface with open edges, expected at least 2x2 (or --edge wrap)",
-                                 heights.width, heights.height));
-  if (!(size_m > 0) || !std::isfinite(size_m))
-    throw InputError(fmt::format("size {} m, expected a finite length above 0", size_m));
+    throw InputError(
+        fmt::format("{}x{} texels span no surface with open edges, expected at least 2x2 (or --edge wrap)",
+                    heights.width, heights.height));
+  if (!(size_m >= kMinSizeM && size_m <= kMaxSizeM))
+    throw InputError(fmt::format("size {} m, expected {} to {} m", size_m, kMinSizeM, kMaxSizeM));
   if (!(amplitude_m >= 0) || !std::isfinite(amplitude_m))
     throw InputError(fmt::format("amplitude {} m, expected a finite length of 0 or more", amplitude_m));
   for (size_t i = 0; i < heights.size(); ++i)
     if (!std::isfinite(heights[i]))
       throw InputError(fmt::format("height at texel {},{} is {}, expected a finite number",
-                                   i % static_cast<size_t>(heights.width), i / static_cast<size_t>(heights.width),
-                                   heights[i]));
-
-  // The lowest texel becomes height 0, in double, so that an offset costs no precision.
-  const double lowest = *std::min_element(heights.values.begin(), heights.values.end());
-  for (size_t i = 0; i < heights.size(); ++i) {
-    const double metres = (static_cast<double>(heights[i]) - lowest) * amplitude_m;
-    if (metres > 1e30)
-      throw InputError(fmt::format("height range of {} m, expected at most 1e30 m", metres));
-    heights[i] = static_cast<float>(metres);
-  }
+                                   i % static_cast<size_t>(heights.width),
+                                   i / static_cast<size_t>(heights.width), heights[i]));
 
   Surface surface;
   surface.texel_size_m = size_m / std::max(heights.width, heights.height);
   surface.edge = edge;
+  // The lowest texel becomes height 0, in double, so that an offset costs no precision.
+  const double lowest = *std::min_element(heights.values.begin(), heights.values.end());
+  for (float& height : heights.values) {
+    const double metres = (static_cast<double>(height) - lowest) * amplitude_m;
+    if (metres > kMaxRangeTexels * surface.texel_size_m)
+      throw InputError(
+          fmt::format("height range of {} m over texels of {} m, expected at most {} times a texel", metres,
+                      surface.texel_size_m, kMaxRangeTexels));
+    height = static_cast<float>(metres);
+  }
   surface.heights_m = std::move(heights);
   surface.normals = central_difference_normals(surface);
   return surface;
 }
 
 double height_range_m(const Surface& surface) {
-  const auto [low, high] = std::minmax_element(surface.heights_m.values.begin(), surface.heights_m.values.end());
+  const auto [low, high] =
+      std::minmax_element(surface.heights_m.values.begin(), surface.heights_m.values.end());
   return static_cast<double>(*high) - static_cast<double>(*low);
 }
 

@@ -33,8 +33,6 @@ constexpr std::array kKinds = {
     SyntheticKindInfo{SyntheticKind::kStep, "step", "one long wall along y, one texel wide", {}},
 };
 
-constexpr double kMinAngleDeg = 1, kMaxAngleDeg = 89;
-
 const SyntheticKindInfo& kind_info(SyntheticKind kind) { return kKinds[static_cast<size_t>(kind)]; }
 
 SyntheticOptions checked(SyntheticKind kind, SyntheticOptions options) {
@@ -50,9 +48,9 @@ SyntheticOptions checked(SyntheticKind kind, SyntheticOptions options) {
   if (!options.angle_rad) options.angle_rad = *info.default_angle_deg * kPi / 180;
   const double angle_deg = *options.angle_rad * 180 / kPi;
   constexpr double kRounding = 1e-9;
-  if (!(angle_deg >= kMinAngleDeg - kRounding && angle_deg <= kMaxAngleDeg + kRounding))
-    throw InputError(
-        fmt::format("angle of {} degrees, expected {} to {}", angle_deg, kMinAngleDeg, kMaxAngleDeg));
+  if (!(angle_deg >= kMinSyntheticAngleDeg - kRounding && angle_deg <= kMaxSyntheticAngleDeg + kRounding))
+    throw InputError(fmt::format("angle of {} degrees, expected {} to {}", angle_deg, kMinSyntheticAngleDeg,
+                                 kMaxSyntheticAngleDeg));
   return options;
 }
 

@@ -11,11 +11,14 @@ namespace hemibake {
 
 enum class SyntheticKind { kBricks, kShapes, kConcrete, kNoise, kFlat, kBowl, kGroove, kCanyon, kStep };
 
+// Angles of the kinds that have one.
+inline constexpr double kMinSyntheticAngleDeg = 1, kMaxSyntheticAngleDeg = 89;
+
 struct SyntheticKindInfo {
   SyntheticKind kind;
   const char* name;
   const char* description;                  // one line
-  std::optional<double> default_angle_deg;  // kinds with an angle: 1..89
+  std::optional<double> default_angle_deg;  // only of kinds with an angle
 };
 
 // Every kind, in the order of the enumeration.

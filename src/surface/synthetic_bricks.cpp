@@ -59,14 +59,34 @@ Wall wall_of(const SyntheticOptions& options) {
           highest_frequency(options), options.seed};
 }
 
+// What differs from brick to brick (the chips: from corner to corner).
+enum class Trait {
+  kTurn,
+  kShift,
+  kLength,
+  kHeight,
+  kWear,
+  kOffset,
+  kTiltX,
+  kTiltY,
+  kSpall,
+  kCrack,
+  kChip,
+  kChipSize,
+  kChipLean,
+  kChipSlope
+};
+
 // One brick and a point in its frame.
 struct BrickPoint {
   double x, y;  // from the brick's centre
   double half_width, half_height;
   uint64_t bits;  // the brick's own
 
-  // Uniform in [−1, 1); property: any number, one per use.
-  double random(int property) const { return 2 * hash_unit(bits, property, 0) - 1; }
+  // Uniform in [−1, 1).
+  double random(Trait trait, int corner = 0) const {
+    return 2 * hash_unit(bits, static_cast<int64_t>(trait), corner) - 1;
+  }
 };
 
 // Where the head joint to the left of brick `column` lies, in columns.
@@ -92,11 +112,11 @@ BrickPoint brick_at(const Wall& wall, double x, double y) {
   const double dx = (u - (left + right) / 2) * pitch_x;
   const double dy = (v - row - 0.5) * pitch_y;
   // Laid by hand: turned a little, shifted a little, not all of a size.
-  const double turn = 0.012 * brick.random(0);
+  const double turn = 0.012 * brick.random(Trait::kTurn);
   brick.x = dx - turn * dy;
-  brick.y = dy + turn * dx + 0.0015 * brick.random(1);
-  brick.half_width = (right - left) * pitch_x / 2 - kJointWidth * (0.5 + 0.12 * brick.random(2));
-  brick.half_height = pitch_y / 2 - kJointWidth * (0.5 + 0.12 * brick.random(3));
+  brick.y = dy + turn * dx + 0.0015 * brick.random(Trait::kShift);
+  brick.half_width = (right - left) * pitch_x / 2 - kJointWidth * (0.5 + 0.12 * brick.random(Trait::kLength));
+  brick.half_height = pitch_y / 2 - kJointWidth * (0.5 + 0.12 * brick.random(Trait::kHeight));
   return brick;
 }
 
@@ -113,14 +133,14 @@ double outline_distance(const Wall& wall, const BrickPoint& brick, double x, dou
 // How deep the broken-off corners cut below the face (0 where none does).
 double chip_depth(const Wall& wall, const BrickPoint& brick, double x, double y) {
   const int corner = (brick.x > 0 ? 1 : 0) + (brick.y > 0 ? 2 : 0);
-  if (brick.random(10 + corner) < 0.2) return 0;
-  const double size = 0.015 + 0.035 * std::abs(brick.random(20 + corner));
-  const double lean =
-      0.5 + 0.4 * brick.random(30 + corner);  // of the fracture, towards the bed or the head joint
+  if (brick.random(Trait::kChip, corner) < 0.2) return 0;
+  const double size = 0.015 + 0.035 * std::abs(brick.random(Trait::kChipSize, corner));
+  // The fracture leans towards the bed or the head joint.
+  const double lean = 0.5 + 0.4 * brick.random(Trait::kChipLean, corner);
   const double from_corner = 2 * (lean * (brick.half_width - std::abs(brick.x)) +
                                   (1 - lean) * (brick.half_height - std::abs(brick.y)));
   const double fracture = from_corner + 0.006 * wall.fractal(x, y, 50, 0.55, Stream::kChips);
-  return std::max(0.0, size - fracture) * (0.7 + 0.5 * std::abs(brick.random(40 + corner)));
+  return std::max(0.0, size - fracture) * (0.7 + 0.5 * std::abs(brick.random(Trait::kChipSlope, corner)));
 }
 
 double pit_depth(const Wall& wall, double x, double y) {
@@ -143,22 +163,22 @@ double grit_height(const Wall& wall, double x, double y) {
 
 // A crack follows the zero line of a noise, on bricks that have one.
 double crack_depth(const Wall& wall, const BrickPoint& brick, double x, double y) {
-  if (brick.random(9) < 0.6) return 0;
+  if (brick.random(Trait::kCrack) < 0.6) return 0;
   const double from_line = std::abs(wall.fractal(x, y, 6, 0.4, Stream::kCracks));
   return 0.009 * (1 - smooth_step(0.0, 0.016, from_line));
 }
 
 double face_height(const Wall& wall, const BrickPoint& brick, double x, double y) {
   // Hard-burnt bricks have weathered least: they are smoother, flatter and stand proud.
-  const double wear = 0.5 + 0.5 * brick.random(4);
-  double height = kFaceHeight + 0.010 * brick.random(5) - 0.013 * wear;
-  height +=
-      wear * (0.06 * brick.random(6) * brick.x + 0.12 * brick.random(7) * brick.y - 3.0 * brick.y * brick.y);
+  const double wear = 0.5 + 0.5 * brick.random(Trait::kWear);
+  double height = kFaceHeight + 0.010 * brick.random(Trait::kOffset) - 0.013 * wear;
+  height += wear * (0.06 * brick.random(Trait::kTiltX) * brick.x +
+                    0.12 * brick.random(Trait::kTiltY) * brick.y - 3.0 * brick.y * brick.y);
   height += (0.002 + 0.021 * wear) * wall.noise(x, y, 13, Stream::kFace);
   height += (0.0005 + 0.0085 * wear) * wall.fractal(x, y, 45, 0.6, Stream::kGrain);
   height += grit_height(wall, x, y);
   // Spalled skin: a sharp-edged shallow layer gone.
-  const double spall = wall.fractal(x, y, 9, 0.55, Stream::kSpalls) + 0.25 * brick.random(8);
+  const double spall = wall.fractal(x, y, 9, 0.55, Stream::kSpalls) + 0.25 * brick.random(Trait::kSpall);
   height -= 0.006 * smooth_step(0.22, 0.26, spall);
   return height - pit_depth(wall, x, y) - chip_depth(wall, brick, x, y) - crack_depth(wall, brick, x, y);
 }

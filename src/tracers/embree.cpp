@@ -20,7 +20,7 @@ namespace {
 
 // The scene is in units of texels: vertices then stand on integers, which float holds exactly on any map we take.
 constexpr int kSmallestBlock = 64;  // texels: smaller maps are repeated, so that a step to the next copy is worth it
-constexpr int kMargin = 16;         // texels of neighbouring copies around the block
+constexpr int kMargin = 64;  // texels of neighbouring copies around the block
 constexpr uint32_t kNoFacet = 0xffffffff;
 
 // Hash streams, one per use.
@@ -57,11 +57,11 @@ class EmbreeTracer final : public Tracer {
   glm::vec3 texel_start(uint32_t texel) const;
   FloatFrame texel_frame(uint32_t texel) const;
   Fate follow(const glm::vec3& start, const glm::vec3& direction, uint32_t own_facet, SurfaceHit* hit) const;
-  Fate follow_segment(const glm::dvec3& start, const glm::vec3& direction, float length, uint32_t own_facet,
+  Fate follow_segment(const glm::vec3& start, const glm::vec3& direction, float length, uint32_t own_facet,
                       SurfaceHit* hit) const;
   Fate follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length, double end,
-                     Fate at_end, uint32_t own_facet, SurfaceHit* hit) const;
-  double length_in_block(double x, double y, const glm::vec3& direction) const;
+                     uint32_t own_facet, SurfaceHit* hit) const;
+  float length_in_block(float x, float y, const glm::vec3& direction) const;
   template <class StartOf>
   void trace_rays(const std::vector<WeightedDirection>& rays, const FloatFrame& frame, const StartOf& start_of,
                   uint32_t own_facet, bool with_links, Row& row, TracerCounts& counts) const;
@@ -80,9 +80,9 @@ class EmbreeTracer final : public Tracer {
   int block_width_, block_height_;  // texels the scene repeats the map to
   int margin_;
   uint32_t scene_columns_;  // cells in a row of the scene
-  double top_texels_;       // height of the highest texel
+  float top_texels_;        // height of the highest texel
+  float max_distance_texels_;
   double lift_texels_;
-  double max_distance_texels_;
   double cut_distance_texels_;  // horizontal distance after which a ray is cut short
 };
 
@@ -100,11 +100,11 @@ EmbreeTracer::EmbreeTracer(const Surface& surface, const RayOptions& options)
     facet_points_.emplace_back(radical_inverse(3, i), radical_inverse(5, i));
 
   const double range = height_range_m(surface) / surface.texel_size_m;
-  top_texels_ = range;
+  top_texels_ = static_cast<float>(range);
   // A thousandth of a texel clears the rounding of the start; on a very low map the lift must not jump over the
   // relief, on a very high one it must clear the rounding of the heights.
   lift_texels_ = std::max(1e-3 * std::min(1.0, range), 0x1p-21 * range);
-  max_distance_texels_ = options.max_distance_m / surface.texel_size_m;
+  max_distance_texels_ = static_cast<float>(options.max_distance_m / surface.texel_size_m);
 
   const int repeat_x = wrap_ ? (kSmallestBlock + surface.width() - 1) / surface.width() : 1;
   const int repeat_y = wrap_ ? (kSmallestBlock + surface.height() - 1) / surface.height() : 1;
@@ -188,15 +188,15 @@ glm::dvec2 EmbreeTracer::hit_position_texels(const SurfaceHit& hit) const {
 
 // Traces one straight piece inside the scene; on a hit of the ray's own facet (rounding on a steep wall) it goes on
 // behind it: a flat facet never sees itself.
-Fate EmbreeTracer::follow_segment(const glm::dvec3& start, const glm::vec3& direction, float length,
+Fate EmbreeTracer::follow_segment(const glm::vec3& start, const glm::vec3& direction, float length,
                                   uint32_t own_facet, SurfaceHit* hit) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query;
   RTCRay& ray = query.ray;
-  ray.org_x = static_cast<float>(start.x);
-  ray.org_y = static_cast<float>(start.y);
-  ray.org_z = static_cast<float>(start.z);
+  ray.org_x = start.x;
+  ray.org_y = start.y;
+  ray.org_z = start.z;
   ray.dir_x = direction.x;
   ray.dir_y = direction.y;
   ray.dir_z = direction.z;
@@ -226,70 +226,58 @@ Fate EmbreeTracer::follow_segment(const glm::dvec3& start, const glm::vec3& dire
   }
 }
 
-// Length along a ray from (x, y) until it leaves the block and the margin, less one cell kept as overlap.
-double EmbreeTracer::length_in_block(double x, double y, const glm::vec3& direction) const {
-  const double reach = margin_ - 1;
-  const double dx = direction.x, dy = direction.y;
-  const double along_x = dx > 0 ? (block_width_ + reach - x) / dx : dx < 0 ? (-reach - x) / dx : HUGE_VAL;
-  const double along_y = dy > 0 ? (block_height_ + reach - y) / dy : dy < 0 ? (-reach - y) / dy : HUGE_VAL;
-  return std::min(along_x, along_y);
+// Length along a ray from (x, y) until it leaves the block and the margin, less one cell kept as overlap. In float: an
+// error is far less than that cell. A direction of 0 along an axis never leaves along it (x / 0 = ∞, inside).
+float EmbreeTracer::length_in_block(float x, float y, const glm::vec3& direction) const {
+  const float reach = static_cast<float>(margin_ - 1);
+  const float edge_x = std::signbit(direction.x) ? -reach : static_cast<float>(block_width_) + reach;
+  const float edge_y = std::signbit(direction.y) ? -reach : static_cast<float>(block_height_) + reach;
+  return std::min((edge_x - x) / direction.x, (edge_y - y) / direction.y);
 }
 
 Fate EmbreeTracer::follow(const glm::vec3& start, const glm::vec3& direction, uint32_t own_facet,
                           SurfaceHit* hit) const {
   // Where the ray has left the slab of the relief. Rounded up: the highest texel itself can still be met.
-  double end = HUGE_VAL;
+  float end = max_distance_texels_;
   if (direction.z > 0) {
-    const double climb = top_texels_ - static_cast<double>(start.z);
+    const float climb = top_texels_ - start.z;
     if (climb <= 0) return Fate::kSky;
-    end = climb / static_cast<double>(direction.z) * 1.0001;
+    end = std::min(end, climb / direction.z * 1.0001f);
   }
-  if (!wrap_) {
-    const float length = static_cast<float>(std::min(end, max_distance_texels_));
-    return follow_segment(start, direction, length, own_facet, hit);
-  }
-  Fate at_end = Fate::kSky;
-  const double first_length = length_in_block(start.x, start.y, direction);
-  if (end > first_length) {
-    const double horizontal = std::hypot(direction.x, direction.y);
-    const double cut = horizontal > 0 ? cut_distance_texels_ / horizontal : HUGE_VAL;
-    if (cut < end) {
-      end = cut;
-      at_end = Fate::kCutShort;
-    }
-  }
-  if (max_distance_texels_ < end) {
-    end = max_distance_texels_;
-    at_end = Fate::kSky;
-  }
-  const Fate fate =
-      follow_segment(start, direction, static_cast<float>(std::min(end, first_length)), own_facet, hit);
-  if (fate == Fate::kHit || end <= first_length) return fate == Fate::kHit ? fate : at_end;
-  return follow_beyond(start, direction, first_length, end, at_end, own_facet, hit);
+  const float first_length = wrap_ ? std::min(end, length_in_block(start.x, start.y, direction)) : end;
+  const Fate fate = follow_segment(start, direction, first_length, own_facet, hit);
+  if (fate == Fate::kHit || first_length == end) return fate;
+  return follow_beyond(start, direction, first_length, end, own_facet, hit);
 }
 
 // Goes on through the following copies of the map. Positions come from the start in double, so that nothing drifts.
 Fate EmbreeTracer::follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length, double end,
-                                 Fate at_end, uint32_t own_facet, SurfaceHit* hit) const {
+                                 uint32_t own_facet, SurfaceHit* hit) const {
+  const double horizontal = std::hypot(direction.x, direction.y);
+  const double cut = cut_distance_texels_ / horizontal;
   // Each piece begins a little before the last one ended: rounding of its start opens no gap.
-  const double overlap = 0.05 / std::hypot(direction.x, direction.y);
+  const double overlap = 0.05 / horizontal;
+  const double stop = std::min(end, cut);
   double travelled = first_length;
-  for (int tiles = 1; travelled < end; ++tiles) {
+  for (int tiles = 1; travelled < stop; ++tiles) {
     const double begin = travelled - overlap;
     glm::dvec3 position = glm::dvec3(start) + begin * glm::dvec3(direction);
     position.x -= block_width_ * std::floor(position.x / block_width_);
     position.y -= block_height_ * std::floor(position.y / block_height_);
-    const double length = std::min(length_in_block(position.x, position.y, direction), end - begin);
-    if (follow_segment(position, direction, static_cast<float>(length), own_facet, hit) == Fate::kHit) {
+    const glm::vec3 piece_start(position);
+    // A piece is a block long or more but for the last one, so this comes to an end.
+    const double length = length_in_block(piece_start.x, piece_start.y, direction);
+    travelled = begin + length;
+    const float piece_length = static_cast<float>(std::min(length, stop - begin));
+    if (follow_segment(piece_start, direction, piece_length, own_facet, hit) == Fate::kHit) {
       if (hit != nullptr) {
         hit->distance_texels += begin;
         hit->tiles_crossed = tiles;
       }
       return Fate::kHit;
     }
-    travelled = begin + length;
   }
-  return at_end;
+  return end <= cut ? Fate::kSky : Fate::kCutShort;
 }
 
 glm::vec3 EmbreeTracer::texel_start(uint32_t texel) const {

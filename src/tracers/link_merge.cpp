@@ -1,6 +1,7 @@
 #include "tracers/link_merge.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace hemibake {
@@ -12,6 +13,31 @@ void add_link(const Surface& surface, int x, int y, double weight, std::vector<L
   if (weight <= 0) return;
   const int i = settle_index(x, surface.width(), surface.edge), j = settle_index(y, surface.height(), surface.edge);
   links.push_back({static_cast<uint32_t>(surface.heights_m.index(i, j)), static_cast<float>(weight)});
+}
+
+constexpr uint32_t kFree = 0xffffffff;
+
+// Leaves each patch once, in order of its first link, weights summed in double in the order of the links. A hash table
+// of the patches met so far: most rays of a row meet a patch that another one met, and sorting them all costs more.
+void sum_equal_patches(std::vector<Link>& links) {
+  thread_local std::vector<uint32_t> slots;  // scratch: index into links of the patch in this slot
+  thread_local std::vector<double> sums;
+  const size_t slot_count = std::bit_ceil(2 * links.size());
+  slots.assign(slot_count, kFree);
+  sums.clear();
+  for (const Link link : links) {
+    // Fibonacci hashing (Knuth, TAOCP 3, 6.4): neighbouring patches spread over the table.
+    size_t slot = (link.patch * 0x9e3779b1u) >> 7 & (slot_count - 1);
+    while (slots[slot] != kFree && links[slots[slot]].patch != link.patch) slot = (slot + 1) & (slot_count - 1);
+    if (slots[slot] == kFree) {
+      slots[slot] = static_cast<uint32_t>(sums.size());
+      links[sums.size()].patch = link.patch;
+      sums.push_back(0);
+    }
+    sums[slots[slot]] += static_cast<double>(link.weight);
+  }
+  links.resize(sums.size());
+  for (size_t i = 0; i < sums.size(); ++i) links[i].weight = static_cast<float>(sums[i]);
 }
 
 }  // namespace
@@ -30,28 +56,25 @@ void add_bilinear_links(const Surface& surface, glm::dvec2 position, double weig
   add_link(surface, x + 1, y + 1, weight * fx * fy, links);
 }
 
+void combine_links(std::vector<Link>& links) {
+  sum_equal_patches(links);
+  std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.patch < b.patch; });
+}
+
 void merge_links(Row& row) {
   if (row.links.empty()) {
     row.direct_over_pi = 1;
     return;
   }
-  // By weight too where patches are equal: the order of summation is then the same whatever order hits came in.
-  std::sort(row.links.begin(), row.links.end(),
-            [](const Link& a, const Link& b) { return a.patch != b.patch ? a.patch < b.patch : a.weight < b.weight; });
-  size_t merged = 0, largest = 0;
+  combine_links(row.links);
   double total = 0;
-  for (size_t i = 0; i < row.links.size();) {
-    const uint32_t patch = row.links[i].patch;
-    double weight = 0;
-    for (; i < row.links.size() && row.links[i].patch == patch; ++i) weight += static_cast<double>(row.links[i].weight);
-    row.links[merged] = {patch, static_cast<float>(weight)};
-    total += static_cast<double>(row.links[merged].weight);
-    if (row.links[merged].weight > row.links[largest].weight) largest = merged;
-    ++merged;
+  Link* largest = &row.links.front();
+  for (Link& link : row.links) {
+    total += static_cast<double>(link.weight);
+    if (link.weight > largest->weight) largest = &link;
   }
-  row.links.resize(merged);
   const double missing = 1 - static_cast<double>(static_cast<float>(row.direct_over_pi)) - total;
-  row.links[largest].weight = static_cast<float>(static_cast<double>(row.links[largest].weight) + missing);
+  largest->weight = static_cast<float>(static_cast<double>(largest->weight) + missing);
 }
 
 }  // namespace hemibake

@@ -16,7 +16,10 @@ void add_nearest_link(const Surface& surface, glm::dvec2 position, double weight
 // The same, spread bilinearly over the four texels around it.
 void add_bilinear_links(const Surface& surface, glm::dvec2 position, double weight, std::vector<Link>& links);
 
-// Sorts row.links by patch and merges equal ones. The rounding of the weights to float goes into the largest one, so
+// Sorts links by patch and merges equal ones, weights summed in double in the order given.
+void combine_links(std::vector<Link>& links);
+
+// combine_links of a row whose weights and direct_over_pi add up to 1. The rounding of the weights to float goes into the largest one, so
 // that Σ weights + float(direct_over_pi) = 1 to the rounding of that one weight. A row without links is all sky:
 // direct_over_pi becomes exactly 1.
 void merge_links(Row& row);

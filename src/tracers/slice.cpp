@@ -1,9 +1,10 @@
 #include "tracers/slice.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 
 #include "core/constants.h"
 #include "sampling/low_discrepancy.h"
@@ -21,11 +22,13 @@ namespace {
 // Hash streams, one per use: apart from those of the other tracers.
 constexpr uint64_t kTexelTurn = 0x511ce01, kFacetTurn = 0x511ce02, kFacetShift = 0x511ce03;
 
-// Paths of a family: azimuths times rotations. With fewer azimuths more rotations, so that all receivers together see
-// the whole circle; with more rotations fewer packets share a path.
+// Paths of a family: azimuths times rotations. With fewer azimuths more rotations, so that all receivers
+// together see the whole circle; with more rotations fewer packets share a path.
 constexpr int kPaths = 512;
 // Segments kept ready in a family, about 500 bytes each.
 constexpr int kReadySegments = 16384;
+
+constexpr uint32_t kNoFacet = 0xffffffff;
 
 class SliceTracer final : public Tracer {
  public:
@@ -40,8 +43,10 @@ class SliceTracer final : public Tracer {
   void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const override {
     trace_patches(patch, with_links, {&row, 1}, counts);
   }
-  void trace_texels(uint32_t first, bool with_links, std::span<Row> rows, TracerCounts& counts) const override;
-  void trace_patches(uint32_t first, bool with_links, std::span<Row> rows, TracerCounts& counts) const override;
+  void trace_texels(uint32_t first, bool with_links, std::span<Row> rows,
+                    TracerCounts& counts) const override;
+  void trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
+                     TracerCounts& counts) const override;
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
 
  private:
@@ -49,10 +54,11 @@ class SliceTracer final : public Tracer {
   int turn_of(uint64_t stream, uint64_t place) const;
   SlicePacket texel_packet(int x, int y) const;
   SlicePacket facet_packet(int column, int row, int half) const;
-  std::vector<PacketView> look(const SlicePaths& paths, bool with_links, std::span<const SlicePacket> packets) const;
+  std::vector<PacketView> look(const SlicePaths& paths, bool with_links,
+                               std::span<const SlicePacket> packets) const;
   void clip_to_max_distance(const SlicePaths& paths, const SlicePacket& packet, PacketView& view) const;
   void fill_row(const SlicePaths& paths, const SlicePacket& packet, const PacketView& view, size_t lane,
-                bool with_links, Row& row, TracerCounts& counts) const;
+                uint32_t own_facet, bool with_links, Row& row, TracerCounts& counts) const;
 
   const Surface& surface_;
   SliceOptions options_;
@@ -107,7 +113,7 @@ SlicePacket SliceTracer::texel_packet(int x, int y) const {
   for (int lane = 0; lane < packet.lanes; ++lane) {
     const size_t l = static_cast<size_t>(lane);
     const glm::vec3& n = surface_.normals(x + lane, y);
-    packet.base[l] = *field_.heights.at(x + lane, y);
+    packet.base[l] = *field_.heights.at(x + lane, y) + static_cast<float>(options_.lift_texels);
     packet.rim_x[l] = -n.x / n.z;
     packet.rim_y[l] = -n.y / n.z;
   }
@@ -127,7 +133,7 @@ SlicePacket SliceTracer::facet_packet(int column, int row, int half) const {
     const int x = column + lane;
     const auto height = [&](int dx, int dy) { return *field_.heights.at(x + dx, row + dy); };
     // The legs of the right angle run along x and y, towards the cell's other side.
-    packet.base[l] = height(half, half);
+    packet.base[l] = height(half, half) + static_cast<float>(options_.lift_texels);
     packet.rim_x[l] = packet.plane_x[l] = height(1, half) - height(0, half);
     packet.rim_y[l] = packet.plane_y[l] = height(half, 1) - height(half, 0);
   }
@@ -145,15 +151,18 @@ std::vector<PacketView> SliceTracer::look(const SlicePaths& paths, bool with_lin
 }
 
 // Turns what is farther away than the maximum distance into sky.
-void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacket& packet, PacketView& view) const {
+void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacket& packet,
+                                       PacketView& view) const {
   for (size_t lane = 0; lane < kSliceLanes; ++lane) {
     std::vector<Stretch> near_stretches;
     for (const Stretch& stretch : view.stretches[lane]) {
       const glm::dvec2 direction =
           paths.paths[paths.path_index(packet.turn, static_cast<int>(stretch.azimuth))].direction;
       Stretch near = clip_stretch(surface_, stretch, direction, max_distance_texels_);
-      const SliceStretchSums all = sums_between(static_cast<double>(stretch.low), static_cast<double>(stretch.high));
-      const SliceStretchSums part = sums_between(static_cast<double>(near.low), static_cast<double>(near.high));
+      const SliceStretchSums all =
+          sums_between(static_cast<double>(stretch.low), static_cast<double>(stretch.high));
+      const SliceStretchSums part =
+          sums_between(static_cast<double>(near.low), static_cast<double>(near.high));
       const double rim = static_cast<double>(packet.rim_x[lane]) * direction.x +
                          static_cast<double>(packet.rim_y[lane]) * direction.y;
       view.sky.uniform[lane] += all.uniform - part.uniform;
@@ -167,12 +176,14 @@ void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacke
   }
 }
 
-void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, const PacketView& view, size_t lane,
-                           bool with_links, Row& row, TracerCounts& counts) const {
+void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, const PacketView& view,
+                           size_t lane, uint32_t own_facet, bool with_links, Row& row,
+                           TracerCounts& counts) const {
   const auto mean_direction = [&](const SliceSums& sums) {
     return glm::dvec3(sums.x[lane], sums.y[lane], sums.z[lane]);
   };
-  const double rim_x = static_cast<double>(packet.rim_x[lane]), rim_y = static_cast<double>(packet.rim_y[lane]);
+  const double rim_x = static_cast<double>(packet.rim_x[lane]),
+               rim_y = static_cast<double>(packet.rim_y[lane]);
   const glm::dvec3 normal_over_z(-rim_x, -rim_y, 1);
   const glm::dvec3 sky = mean_direction(view.sky);
   const double whole = glm::dot(normal_over_z, mean_direction(view.hemisphere));
@@ -186,6 +197,8 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
   counts.cut_short += view.cut_short[lane];
   if (!with_links) return;
   for (const Stretch& stretch : view.stretches[lane]) {
+    // Where a path leaves its own facet at a corner, rounding may leave a little of it.
+    if (stretch.facet == own_facet) continue;
     const SlicePath& path = paths.paths[paths.path_index(packet.turn, static_cast<int>(stretch.azimuth))];
     const glm::dvec2 start = glm::dvec2(packet.x + static_cast<int>(lane), packet.y) + path.origin;
     const double rim = rim_x * path.direction.x + rim_y * path.direction.y;
@@ -195,8 +208,10 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
   merge_links(row);
 }
 
-void SliceTracer::trace_texels(uint32_t first, bool with_links, std::span<Row> rows, TracerCounts& counts) const {
-  const uint32_t width = static_cast<uint32_t>(surface_.width()), end = first + static_cast<uint32_t>(rows.size());
+void SliceTracer::trace_texels(uint32_t first, bool with_links, std::span<Row> rows,
+                               TracerCounts& counts) const {
+  const uint32_t width = static_cast<uint32_t>(surface_.width()),
+                 end = first + static_cast<uint32_t>(rows.size());
   std::vector<SlicePacket> packets;
   for (uint32_t texel = first; texel < end;) {
     const int x = static_cast<int>(texel % width), lane = x % kSliceLanes;
@@ -208,11 +223,13 @@ void SliceTracer::trace_texels(uint32_t first, bool with_links, std::span<Row> r
   for (uint32_t texel = first; texel < end; ++texel) {
     const size_t lane = texel % width % kSliceLanes;
     if (lane == 0 && texel > first) ++index;
-    fill_row(texel_paths_, packets[index], views[index], lane, with_links, rows[texel - first], counts);
+    fill_row(texel_paths_, packets[index], views[index], lane, kNoFacet, with_links, rows[texel - first],
+             counts);
   }
 }
 
-void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> rows, TracerCounts& counts) const {
+void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
+                                TracerCounts& counts) const {
   if (options_.patches == Patches::kTexels) return trace_texels(first, with_links, rows, counts);
   const uint32_t columns = facet_columns(surface_), end = first + static_cast<uint32_t>(rows.size());
   for (uint32_t half = 0; half < 2; ++half) {
@@ -221,7 +238,8 @@ void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> 
     std::vector<SlicePacket> packets;
     for (uint32_t cell = first_cell; cell < end_cell;) {
       const int column = static_cast<int>(cell % columns), lane = column % kSliceLanes;
-      packets.push_back(facet_packet(column - lane, static_cast<int>(cell / columns), static_cast<int>(half)));
+      packets.push_back(
+          facet_packet(column - lane, static_cast<int>(cell / columns), static_cast<int>(half)));
       cell += static_cast<uint32_t>(packets.back().lanes - lane);
     }
     const std::vector<PacketView> views = look(paths, with_links, packets);
@@ -229,7 +247,8 @@ void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> 
     for (uint32_t cell = first_cell; cell < end_cell; ++cell) {
       const size_t lane = cell % columns % kSliceLanes;
       if (lane == 0 && cell > first_cell) ++index;
-      fill_row(paths, packets[index], views[index], lane, with_links, rows[2 * cell + half - first], counts);
+      const uint32_t facet = 2 * cell + half;
+      fill_row(paths, packets[index], views[index], lane, facet, with_links, rows[facet - first], counts);
     }
   }
 }
@@ -252,13 +271,21 @@ std::vector<RayRecord> SliceTracer::replay_texel(uint32_t texel) const {
     const double rim = glm::dot(rim_slope, direction);
     const auto record_of = [&](double low, double high, const SliceStretchSums& sums) {
       const double middle = (std::atan(low) + std::atan(high)) / 2;
-      const glm::dvec3 toward(std::cos(middle) * direction.x, std::cos(middle) * direction.y, std::sin(middle));
-      return RayRecord{toward, (sums.vertical - rim * sums.horizontal) / cosine_whole, sums.uniform / uniform_whole,
-                       false,  0, {0, 0}, 0, 0};
+      const glm::dvec3 toward(std::cos(middle) * direction.x, std::cos(middle) * direction.y,
+                              std::sin(middle));
+      return RayRecord{toward,
+                       (sums.vertical - rim * sums.horizontal) / cosine_whole,
+                       sums.uniform / uniform_whole,
+                       false,
+                       0,
+                       {0, 0},
+                       0,
+                       0};
     };
     SliceStretchSums sky = sums_between(rim, HUGE_VAL);
     double horizon = std::max(rim, surface_.edge == Edge::kWrap ? 0 : rim);
-    for (; stretch != views[0].stretches[lane].end() && stretch->azimuth == static_cast<uint32_t>(azimuth); ++stretch) {
+    for (; stretch != views[0].stretches[lane].end() && stretch->azimuth == static_cast<uint32_t>(azimuth);
+         ++stretch) {
       const double low = static_cast<double>(stretch->low), high = static_cast<double>(stretch->high);
       const SliceStretchSums seen = sums_between(low, high);
       RayRecord record = record_of(low, high, seen);
@@ -269,7 +296,8 @@ std::vector<RayRecord> SliceTracer::replay_texel(uint32_t texel) const {
       record.hit = true;
       record.facet = stretch->facet;
       record.hit_texel = place - tile * size;
-      record.distance_m = distance / std::hypot(record.direction.x, record.direction.y) * surface_.texel_size_m;
+      record.distance_m =
+          distance / std::hypot(record.direction.x, record.direction.y) * surface_.texel_size_m;
       record.tiles_crossed = static_cast<int>(std::abs(tile.x) + std::abs(tile.y));
       records.push_back(record);
       sky.uniform -= seen.uniform;

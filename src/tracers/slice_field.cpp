@@ -43,7 +43,8 @@ HeightPlane margined_heights(const Surface& surface, bool wrap) {
 // Widens the window of every place of `plane` by `step` texels to the right and downwards.
 void widen(const SliceField& field, int step, HeightPlane& plane) {
   const size_t pitch = plane.pitch, rows = plane.values.size() / pitch, s = static_cast<size_t>(step);
-  // Beyond the margin a wrapping map starts again (its margins on the left and above are 1); an open one has nothing.
+  // Beyond the margin a wrapping map starts again (its margins on the left and above are 1); an open one has
+  // nothing.
   const auto wrapped = [](size_t i, int period) { return (i - 1) % static_cast<size_t>(period) + 1; };
   std::vector<float> wide(plane.values.size());
   parallel_for(rows, kRowsPerPiece, [&](size_t begin, size_t end) {

@@ -1,5 +1,5 @@
-// The heights laid out for slices: with margins, so that a piece of path reads them without asking for the edge, and
-// with the tallest height of square windows, so that a walk skips what lies below its horizon.
+// The heights laid out for slices: with margins, so that a piece of path reads them without asking for the
+// edge, and with the tallest height of square windows, so that a walk skips what lies below its horizon.
 #pragma once
 
 #include <array>
@@ -26,7 +26,8 @@ struct HeightPlane {
   int row_shift = 0;  // 2^row_shift rows of texels share a row of the plane
 
   size_t index(int x, int y) const {
-    return static_cast<size_t>((y + margin_above) >> row_shift) * pitch + static_cast<size_t>(x + margin_left);
+    return static_cast<size_t>((y + margin_above) >> row_shift) * pitch +
+           static_cast<size_t>(x + margin_left);
   }
   const float* at(int x, int y) const { return values.data() + index(x, y); }
 };
@@ -36,8 +37,8 @@ struct SliceField {
   bool wrap = true;
   float top = 0;  // height of the highest texel, in texels, as all heights here
 
-  // Any position from -1, -1 on may be followed by a packet and a segment; on an open map also positions before it
-  // from which a window just reaches the map.
+  // Any position from -1, -1 on may be followed by a packet and a segment; on an open map also positions
+  // before it from which a window just reaches the map.
   HeightPlane heights;
   // [level] at (x, y): at least the tallest corner in x … x + s − 1 and y … y + s − 1, where
   // s = kSegmentCells · kSkipSegments[level] + 2.

@@ -12,7 +12,8 @@ namespace {
 // Texels: a stretch longer than this is split where patches are texels.
 constexpr double kLongestPiece = 0.5;
 
-// A stretch in its slice: the line z = gradient · r − depth from the start, where r is the horizontal distance.
+// A stretch in its slice: the line z = gradient · r − depth from the start, where r is the horizontal
+// distance.
 struct StretchLine {
   double gradient;
   double depth;      // ≥ 0: how far the facet's plane passes below the start
@@ -43,7 +44,8 @@ double stretch_distance(const Surface& surface, const Stretch& stretch, glm::dve
   return StretchLine(surface, stretch, direction).distance_at(slope);
 }
 
-Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 direction, double max_distance) {
+Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 direction,
+                     double max_distance) {
   const StretchLine line(surface, stretch, direction);
   const bool near_inside = line.ray_length(line.near) < max_distance;
   const bool far_inside = line.ray_length(line.far) < max_distance;
@@ -54,12 +56,14 @@ Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 
   const double g = line.gradient, d = line.depth, scale = 1 + g * g;
   const double discriminant = max_distance * max_distance * scale - d * d;
   const double root = std::sqrt(std::max(0.0, discriminant));
-  const double enter = std::max(line.near, (g * d - root) / scale), leave = std::min(line.far, (g * d + root) / scale);
+  const double enter = std::max(line.near, (g * d - root) / scale),
+               leave = std::min(line.far, (g * d + root) / scale);
   if (discriminant <= 0 || enter >= leave) {
     clipped.high = clipped.low;
     return clipped;
   }
-  if (!near_inside) clipped.low = std::clamp(static_cast<float>(line.slope_at(enter)), stretch.low, stretch.high);
+  if (!near_inside)
+    clipped.low = std::clamp(static_cast<float>(line.slope_at(enter)), stretch.low, stretch.high);
   if (!far_inside) {
     clipped.high = std::clamp(static_cast<float>(line.slope_at(leave)), stretch.low, stretch.high);
     clipped.inverse_distance = static_cast<float>(1 / leave);
@@ -67,8 +71,9 @@ Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 
   return clipped;
 }
 
-void append_stretch_links(const Surface& surface, const SliceOptions& options, const Stretch& stretch, double weight,
-                          double rim, glm::dvec2 start, glm::dvec2 direction, std::vector<Link>& links) {
+void append_stretch_links(const Surface& surface, const SliceOptions& options, const Stretch& stretch,
+                          double weight, double rim, glm::dvec2 start, glm::dvec2 direction,
+                          std::vector<Link>& links) {
   if (options.patches == Patches::kFacets) {
     links.push_back({stretch.facet, static_cast<float>(weight)});
     return;

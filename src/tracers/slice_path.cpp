@@ -6,7 +6,8 @@
 namespace hemibake {
 namespace {
 
-// Crossings this close to the ends of a segment, in texels, belong to both neighbours: none is lost to rounding.
+// Crossings this close to the ends of a segment, in texels, belong to both neighbours: none is lost to
+// rounding.
 constexpr double kOverlap = 1e-9;
 
 // A path this nearly parallel to a family of lines meets none of it in any distance that is followed.
@@ -55,8 +56,8 @@ SegmentWindows segment_windows(const SliceField& field, const SlicePath& path, i
   return windows;
 }
 
-void append_crossings(const SliceField& field, const SlicePath& path, int segment, std::vector<Crossing>& crossings,
-                      std::vector<FacetBefore>& facets) {
+void append_crossings(const SliceField& field, const SlicePath& path, int segment,
+                      std::vector<Crossing>& crossings, std::vector<FacetBefore>& facets) {
   const double near = segment * path.step;
   const glm::dvec2 d = path.direction;
   const glm::dvec2 p = path.origin + near * d - glm::dvec2(window_corner(path, segment, 1));

@@ -1,5 +1,5 @@
-// The crossings of straight paths with the edges of the triangles: the same for every receiver that starts at the
-// same place of its cell in the same direction.
+// The crossings of straight paths with the edges of the triangles: the same for every receiver that starts at
+// the same place of its cell in the same direction.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ struct FacetBefore {
   int16_t half;  // 0: the facet with the cell's corner (i, j), 1: the other (surface/facets.h)
 };
 
-// First corners of the windows that begin with a segment, by level, relative to the start's cell; wrapped into the map
-// where it wraps. Levels whose windows do not begin with this segment are not used.
+// First corners of the windows that begin with a segment, by level, relative to the start's cell; wrapped
+// into the map where it wraps. Levels whose windows do not begin with this segment are not used.
 struct SegmentWindows {
   glm::ivec2 corner[kSkipLevels];
 };
@@ -40,18 +40,18 @@ SlicePath make_slice_path(const glm::dvec2& origin, double azimuth, bool starts_
 
 SegmentWindows segment_windows(const SliceField& field, const SlicePath& path, int segment);
 
-// Appends the crossings of one segment by distance, both its ends included, and the facets before them; not the start
-// itself. The first segment of a path that starts inside a facet leaves out where it leaves this facet: that lies in
-// the facet's plane.
-void append_crossings(const SliceField& field, const SlicePath& path, int segment, std::vector<Crossing>& crossings,
-                      std::vector<FacetBefore>& facets);
+// Appends the crossings of one segment by distance, both its ends included, and the facets before them; not
+// the start itself. The first segment of a path that starts inside a facet leaves out where it leaves this
+// facet: that lies in the facet's plane.
+void append_crossings(const SliceField& field, const SlicePath& path, int segment,
+                      std::vector<Crossing>& crossings, std::vector<FacetBefore>& facets);
 
 // The paths of one family of receivers (texels, or one half of the cells), with their nearest segments ready.
 struct SlicePaths {
   int azimuths = 0;
-  int turns = 0;           // rotations of the azimuths
-  int ready_segments = 0;  // per path
-  std::vector<SlicePath> paths;        // [turn · azimuths + azimuth]
+  int turns = 0;                        // rotations of the azimuths
+  int ready_segments = 0;               // per path
+  std::vector<SlicePath> paths;         // [turn · azimuths + azimuth]
   std::vector<SegmentWindows> windows;  // [path · ready_segments + segment]
   std::vector<uint32_t> first;          // the same, and the end: into crossings and facets
   std::vector<Crossing> crossings;

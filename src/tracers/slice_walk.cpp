@@ -19,7 +19,8 @@ namespace hemibake {
 
 // Slopes: an azimuth ends where no more than this can be gained.
 constexpr float kHorizonTolerance = 1e-4f;
-// The same below a slope of zero, where a wrapping map blocks everything and only the links are still to be found.
+// The same below a slope of zero, where a wrapping map blocks everything and only the links are still to be
+// found.
 constexpr float kLinkTolerance = 1e-3f;
 // Longer sides of the map after which a walk ends in any case.
 constexpr double kFarthestMaps = 1e4;
@@ -165,7 +166,8 @@ class PathWalk {
   void count_cut_short(const Lanes& lanes, int segment, PacketView& view) const;
   int segments_to_skip(const SlicePacket& packet, const Lanes& lanes, int segment);
   template <bool kStretches>
-  void cross_segment(const SlicePacket& packet, uint32_t azimuth, int segment, Lanes& lanes, PacketView& view);
+  void cross_segment(const SlicePacket& packet, uint32_t azimuth, int segment, Lanes& lanes,
+                     PacketView& view);
   uint32_t facet_at(glm::ivec2 corner, const FacetBefore& facet, int lane) const;
 
   float inverse_distance(int segment) const { return inverse_step_ / static_cast<float>(segment); }
@@ -199,7 +201,8 @@ HWY_INLINE Lanes PathWalk::start(const SlicePacket& packet) const {
   for (size_t p = 0; p < kParts; ++p) {
     lanes.to_top.part[p] = hn::Sub(hn::Sub(top, lanes.base.part[p]), lanes.rise.part[p]);
     const int walked = std::clamp(packet.lanes - static_cast<int>(p * kWidth), 0, static_cast<int>(kWidth));
-    V slope = hn::IfThenElse(hn::FirstN(kF, static_cast<size_t>(walked)), lanes.rim.part[p], hn::Set(kF, kClosed));
+    V slope =
+        hn::IfThenElse(hn::FirstN(kF, static_cast<size_t>(walked)), lanes.rim.part[p], hn::Set(kF, kClosed));
     if (blocks_below_ && !options_.with_stretches) slope = hn::Max(slope, hn::Zero(kF));
     lanes.slope.part[p] = slope;
     if (options_.with_stretches) lanes.above.part[p] = cosine_above(slope, lanes.rim.part[p]);
@@ -253,8 +256,8 @@ HWY_INLINE int PathWalk::segments_to_skip(const SlicePacket& packet, const Lanes
 }
 
 template <bool kStretches>
-HWY_INLINE void PathWalk::cross_segment(const SlicePacket& packet, uint32_t azimuth, int segment, Lanes& lanes,
-                                        PacketView& view) {
+HWY_INLINE void PathWalk::cross_segment(const SlicePacket& packet, uint32_t azimuth, int segment,
+                                        Lanes& lanes, PacketView& view) {
   const glm::ivec2 corner = place(packet, segments_.windows(segment).corner[0]);
   const float* heights = field_.heights.at(corner.x, corner.y);
   const SegmentView crossed = segments_.crossings(segment);
@@ -284,8 +287,8 @@ HWY_INLINE void PathWalk::cross_segment(const SlicePacket& packet, uint32_t azim
       hn::StoreMaskBits(kF, seen, bytes);
       for (uint32_t bits = bytes[0] | static_cast<uint32_t>(bytes[1]) << 8; bits != 0; bits &= bits - 1) {
         const size_t l = hwy::Num0BitsBelowLS1Bit_Nonzero32(bits), lane = p * kWidth + l;
-        view.stretches[lane].push_back({facet_at(corner, crossed.facets[i], static_cast<int>(lane)), weight[l], low[l],
-                                        high[l], crossing.inverse_distance, azimuth});
+        view.stretches[lane].push_back({facet_at(corner, crossed.facets[i], static_cast<int>(lane)),
+                                        weight[l], low[l], high[l], crossing.inverse_distance, azimuth});
       }
     }
   }
@@ -302,7 +305,8 @@ HWY_INLINE uint32_t PathWalk::facet_at(glm::ivec2 corner, const FacetBefore& fac
     column = std::clamp(column, 0, columns - 1);
     row = std::clamp(row, 0, field_.height - 2);
   }
-  const uint32_t cell = static_cast<uint32_t>(row) * static_cast<uint32_t>(columns) + static_cast<uint32_t>(column);
+  const uint32_t cell =
+      static_cast<uint32_t>(row) * static_cast<uint32_t>(columns) + static_cast<uint32_t>(column);
   return 2 * cell + static_cast<uint32_t>(facet.half);
 }
 
@@ -312,7 +316,8 @@ void walk_all(const SliceField& field, const SlicePaths& paths, const WalkOption
   // Path after path, so that a path's crossings and the heights it meets stay in the caches.
   std::vector<size_t> order(packets.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return packets[a].turn < packets[b].turn; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return packets[a].turn < packets[b].turn; });
   PathWalk walk(field, paths, options);
   for (int azimuth = 0; azimuth < paths.azimuths; ++azimuth) {
     int turn = -1;

@@ -42,15 +42,16 @@ struct Stretch {
 
 // What every lane of a packet sees.
 struct PacketView {
-  SliceSums hemisphere;  // everything above the plane normal to the receiver's normal
-  SliceSums sky;         // what of it is sky
+  SliceSums hemisphere;                       // everything above the plane normal to the receiver's normal
+  SliceSums sky;                              // what of it is sky
   LaneArray<std::vector<Stretch>> stretches;  // by azimuth, then by distance
   LaneArray<uint32_t> cut_short{};
 };
 
 struct WalkOptions {
   bool with_stretches = false;
-  double max_distance = std::numeric_limits<double>::infinity();  // horizontal, texels: no need to go on beyond
+  double max_distance =
+      std::numeric_limits<double>::infinity();  // horizontal, texels: no need to go on beyond
 };
 
 // Adds to the views of the packets what they see. Packets near each other are best given together.

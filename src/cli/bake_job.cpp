@@ -1,0 +1,248 @@
+#include "cli/bake_job.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "core/constants.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/statistics.h"
+#include "io/links_file.h"
+#include "transport/bounces.h"
+#include "transport/trace_surface.h"
+
+namespace hemibake {
+namespace {
+
+constexpr double kGib = 1024.0 * 1024 * 1024;
+constexpr size_t kTexelsNamed = 5;  // of those that did not converge
+
+PlanOptions plan_options(const BakeJob& job) {
+  PlanOptions plan;
+  plan.patches = patches_of(job.options);
+  plan.with_links = job.options.needs_links();
+  plan.bounces = job.options.wants("irradiance") ? job.options.bounces : 0;
+  plan.scene_bytes = tracer_bytes(job.options, job.map.surface);
+  return plan;
+}
+
+void refuse_beyond_memory(const BakeJob& job, const BakePlan& plan) {
+  const double allowed = job.options.memory_gib ? *job.options.memory_gib * kGib : static_cast<double>(machine_memory_bytes());
+  if (static_cast<double>(plan.memory_bytes()) <= allowed) return;
+  throw InputError(fmt::format("{}: the bake needs {:.2f} GiB, expected at most the {:.2f} GiB of {}", job.options.map.string(),
+                               static_cast<double>(plan.memory_bytes()) / kGib, allowed / kGib,
+                               job.options.memory_gib ? "--memory" : "this machine"));
+}
+
+// Everything that decides the bytes of the result.
+Provenance provenance_of(const BakeOptions& options, const Surface& surface) {
+  Provenance p = make_provenance(command_line(process_arguments()), options.map);
+  record_map_options(options, p);
+  p["texel_size_m"] = surface.texel_size_m;
+  p["tracer"] = options.tracer;
+  p["rays"] = options.rays;
+  p["cone_degrees"] = options.cone_degrees;
+  if (options.max_distance_m) p["max_distance_m"] = *options.max_distance_m;
+  p["seed"] = options.seed;
+  p["patches"] = options.patches;
+  if (options.tracer == "march") {
+    p["max_steps"] = options.max_steps;
+    p["lift_percent"] = options.lift_percent;
+    p["ray_set"] = options.ray_set;
+    p["lookup"] = options.lookup;
+    p["normalize"] = options.normalize;
+    p["normal_length"] = options.normal_length;
+  }
+  if (options.tracer != "march") p["directions"] = options.directions;
+  if (options.tracer != "march" && options.patches == "texels") p["texel_links"] = options.texel_links;
+  p["outputs"] = fmt::format("{}", fmt::join(options.outputs, ","));
+  p["bounces"] = options.bounces;
+  if (options.converge) {
+    p["converge"] = *options.converge;
+    p["max_bounces"] = options.max_bounces;
+  }
+  return p;
+}
+
+void record_tracing(const Visibility& seen, Provenance& p) {
+  p["rays_traced"] = seen.counts.rays;
+  p["rays_cut_short"] = seen.counts.cut_short;
+  if (!seen.gather.empty()) p["links"] = seen.gather.count() + seen.patches.count();
+}
+
+void record_link_energy(const LinkEnergy& energy, Provenance& p) {
+  p["row_sum_error"] = energy.row_sum_error;
+  if (!energy.light_over_opening) return;
+  p["light_over_opening"] = *energy.light_over_opening;
+  p["light_over_opening_stderr"] = energy.light_over_opening_stderr;
+}
+
+void record_bounces(const Bounces& bounces, Provenance& p) {
+  p["bounces_made"] = bounces.bounces_made;
+  p["mean_residual"] = bounces.mean_residual;
+  p["worst_residual"] = bounces.worst_residual;
+  p["texels_short"] = bounces.texels_short.size();
+  p["texels_closed"] = bounces.texels_closed.size();
+}
+
+std::string name_texels(const std::vector<uint32_t>& texels, int width) {
+  std::string names;
+  for (size_t i = 0; i < std::min(texels.size(), kTexelsNamed); ++i)
+    names += fmt::format(" {},{}", texels[i] % static_cast<uint32_t>(width), texels[i] / static_cast<uint32_t>(width));
+  return names + (texels.size() > kTexelsNamed ? " …" : "");
+}
+
+std::vector<std::string> warnings_of(const BakeOptions& options, const Visibility& seen, const Bounces& bounces) {
+  std::vector<std::string> warnings;
+  const int width = seen.direct_over_pi.width;
+  if (!bounces.texels_short.empty())
+    warnings.push_back(fmt::format("{} texels are short of {:g} after {} bounces, the worst by {:.3g}:{}",
+                                   bounces.texels_short.size(), *options.converge, bounces.bounces_made,
+                                   bounces.worst_residual, name_texels(bounces.texels_short, width)));
+  if (!bounces.texels_closed.empty())
+    warnings.push_back(fmt::format("{} texels see only themselves and never fill:{}", bounces.texels_closed.size(),
+                                   name_texels(bounces.texels_closed, width)));
+  if (seen.counts.cut_short > 0)
+    warnings.push_back(fmt::format("{} of {} rays were followed to the far limit below the highest texel and taken for sky",
+                                   seen.counts.cut_short, seen.counts.rays));
+  return warnings;
+}
+
+void store_planes(const BakeOptions& options, const Surface& surface, Visibility& seen, Bounces& bounces, Bake& bake) {
+  bake.width = surface.width();
+  bake.height = surface.height();
+  if (options.wants("ao")) bake.visible_fraction = std::move(seen.visible_fraction);
+  if (options.wants("bent")) bake.bent_normals = std::move(seen.bent_normals);
+  if (options.wants("normal")) bake.normals = surface.normals;
+  if (options.wants("irradiance")) {
+    bake.irradiance = std::move(bounces.irradiance);
+    bake.total = std::move(bounces.total);
+    bake.residual = std::move(bounces.residual);
+  }
+}
+
+std::vector<float> irradiance_of(const std::vector<float>& over_pi) {
+  std::vector<float> irradiance(over_pi.size());
+  for (size_t i = 0; i < over_pi.size(); ++i) irradiance[i] = static_cast<float>(kPi * static_cast<double>(over_pi[i]));
+  return irradiance;
+}
+
+double mean_of(const Grid<float>& plane) { return mean(std::span<const float>(plane.values)); }
+
+}  // namespace
+
+void prepare_bake(const BakeOptions& options, bool only_plan, BakeJob& job) {
+  job.options = options;
+  job.map = load_bake_map(options);
+  // Twice: before the scene is built, which may be too large already, and with the links a pilot finds.
+  if (!only_plan) refuse_beyond_memory(job, plan_planes(job.map.surface, plan_options(job)));
+  job.tracer = make_tracer(options, job.map);
+  job.plan = plan_bake(job.map.surface, *job.tracer, plan_options(job));
+  if (!only_plan) refuse_beyond_memory(job, job.plan);
+}
+
+BakeResult perform_bake(const BakeJob& job) {
+  const BakeOptions& options = job.options;
+  const auto start = std::chrono::steady_clock::now();
+  const double cpu_start = process_cpu_seconds();
+  BakeResult result;
+  result.provenance = provenance_of(options, job.map.surface);
+
+  Visibility seen = trace_surface(*job.tracer, job.map.surface.width(), job.map.surface.height(), patches_of(options),
+                                  options.needs_links());
+  result.rays = seen.counts.rays;
+  result.trace_cpu_seconds = process_cpu_seconds() - cpu_start;
+  record_tracing(seen, result.provenance);
+  if (!seen.gather.empty()) {
+    result.link_energy = measure_link_energy(job.map.surface, seen);
+    record_link_energy(*result.link_energy, result.provenance);
+  }
+
+  Bounces bounces;
+  if (options.wants("irradiance")) {
+    bounces = bounce_light(seen, {options.bounces, options.converge, options.max_bounces});
+    record_bounces(bounces, result.provenance);
+  }
+  if (!options.links.empty())
+    write_links(options.links, seen.gather, seen.patches.empty() ? nullptr : &seen.patches,
+                irradiance_of(seen.patch_direct()), result.provenance);
+  result.warnings = warnings_of(options, seen, bounces);
+  store_planes(options, job.map.surface, seen, bounces, result.bake);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.cpu_seconds = process_cpu_seconds() - cpu_start;
+  return result;
+}
+
+std::string describe_bake(const BakeJob& job, const BakeResult& result) {
+  const Bake& bake = result.bake;
+  const double million_rays = 1e-6 * static_cast<double>(result.rays);
+  std::string text = fmt::format("{}: {}x{} texels, {:g} m, amplitude {:g} m, {} edges, {} patches\n", job.options.map.string(),
+                                 bake.width, bake.height, job.options.size_m, job.options.amplitude_m, job.options.edge,
+                                 job.options.patches);
+  text += fmt::format("rays      {:.1f} M in {:.1f} s ({:.1f} cpu-s, {:.2f} Mray/cpu-s)", million_rays, result.seconds,
+                      result.cpu_seconds, million_rays / result.trace_cpu_seconds);
+  if (result.provenance.contains("links")) text += fmt::format(", {:.1f} M links", 1e-6 * result.provenance["links"].get<double>());
+  text += fmt::format(", peak memory {:.2f} GiB\n", static_cast<double>(peak_memory_bytes()) / kGib);
+  if (!bake.visible_fraction.empty()) text += fmt::format("ao        mean {:.5f}\n", mean_of(bake.visible_fraction));
+  if (!bake.irradiance.empty()) {
+    text += fmt::format("E0/pi     mean {:.5f}", mean_of(bake.irradiance[0]) / kPi);
+    if (bake.irradiance.size() > 1) text += fmt::format(", E1/pi {:.5f}", mean_of(bake.irradiance[1]) / kPi);
+    double half = 0;
+    for (size_t b = bake.irradiance.size(); b-- > 0;) half = half / 2 + mean_of(bake.irradiance[b]) / kPi;
+    text += fmt::format(", all at albedo 0.5 {:.5f}\n", half);
+    text += fmt::format("energy    mean {:.6f} of pi after {} bounces, still under way {:.2g}, in the worst texel {:.2g}\n",
+                        mean_of(bake.total) / kPi, result.provenance["bounces_made"].get<int>(),
+                        result.provenance["mean_residual"].get<double>(), result.provenance["worst_residual"].get<double>());
+  }
+  return text;
+}
+
+nlohmann::ordered_json json_from_bake(const BakeJob& job, const BakeResult& result) {
+  nlohmann::ordered_json json = result.provenance;
+  json["width"] = result.bake.width;
+  json["height"] = result.bake.height;
+  json["seconds"] = result.seconds;
+  json["cpu_seconds"] = result.cpu_seconds;
+  json["mray_per_cpu_second"] = 1e-6 * static_cast<double>(result.rays) / result.trace_cpu_seconds;
+  json["peak_memory_bytes"] = peak_memory_bytes();
+  json["planned_memory_bytes"] = job.plan.memory_bytes();
+  if (!result.bake.visible_fraction.empty()) json["mean_ao"] = mean_of(result.bake.visible_fraction);
+  if (!result.bake.irradiance.empty()) {
+    nlohmann::ordered_json means = nlohmann::ordered_json::array();
+    for (const auto& plane : result.bake.irradiance) means.push_back(mean_of(plane) / kPi);
+    json["mean_irradiance_over_pi"] = means;
+    json["mean_total_over_pi"] = mean_of(result.bake.total) / kPi;
+  }
+  json["warnings"] = result.warnings;
+  return json;
+}
+
+std::string describe_plan(const BakeJob& job) {
+  const BakePlan& plan = job.plan;
+  const auto gib = [](size_t bytes) { return static_cast<double>(bytes) / kGib; };
+  return fmt::format(
+      "memory    {:.3f} GiB: surface and scene {:.3f}, links {:.3f}, planes {:.3f}\n"
+      "work      {:.1f} M rays, {:.1f} M links, {} bounces: about {:.0f} cpu-s tracing, {:.0f} cpu-s bouncing\n",
+      gib(plan.memory_bytes()), gib(plan.surface_bytes), gib(plan.link_bytes), gib(plan.plane_bytes),
+      1e-6 * static_cast<double>(plan.rays), 1e-6 * static_cast<double>(plan.links), job.options.bounces,
+      plan.trace_cpu_seconds, plan.bounce_cpu_seconds);
+}
+
+nlohmann::ordered_json json_from_plan(const BakeJob& job) {
+  const BakePlan& plan = job.plan;
+  return {{"memory_bytes", plan.memory_bytes()},
+          {"memory_gib", static_cast<double>(plan.memory_bytes()) / kGib},
+          {"surface_bytes", plan.surface_bytes},
+          {"link_bytes", plan.link_bytes},
+          {"plane_bytes", plan.plane_bytes},
+          {"rays", plan.rays},
+          {"links", plan.links},
+          {"trace_cpu_seconds", plan.trace_cpu_seconds},
+          {"bounce_cpu_seconds", plan.bounce_cpu_seconds}};
+}
+
+}  // namespace hemibake

@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/common_options.h"
+#include "cli/name_file.h"
+#include "fitting/models.h"
+#include "io/curves_file.h"
+#include "io/fit_file.h"
+#include "io/output_file.h"
+#include "io/provenance.h"
+
+namespace hemibake {
+namespace {
+
+struct FitOptions {
+  CommonOptions common;
+  std::string curves;
+  std::string output;
+  std::vector<std::string> models = {"published", "bounded"};
+  std::string abscissa = to_string(Abscissa::center);
+  std::string weights = to_string(Weights::none);
+};
+
+std::string describe(const NamedFit& named) {
+  const Fit& fit = named.fit;
+  std::string text = fmt::format("{:12} {}\n{:12}", named.name, fit.formula, "");
+  for (const FitParameter& parameter : fit.parameters) {
+    text += fmt::format(" {} = {:.6g}", parameter.name, parameter.value);
+    if (parameter.standard_error) text += fmt::format(" ± {:.2g}", *parameter.standard_error);
+    text += ',';
+  }
+  return text + fmt::format(" rms {:.5f}, max {:.5f}, {} points\n", fit.rms, fit.max_error, fit.points);
+}
+
+int run_fit(const FitOptions& options) {
+  apply_common_options(options.common);
+  check_output_path(options.output, {".json"});
+  const Abscissa abscissa = abscissa_from_string(options.abscissa);
+  const Weights weights = weights_from_string(options.weights);
+  const Curves curves = read_curves(options.curves);
+  FitFile file;
+  name_file(options.curves, [&] {
+    for (const std::string& model : options.models) {
+      for (NamedFit& named : fit_model(model, curves, abscissa, weights))
+        file.fits.push_back(std::move(named));
+    }
+  });
+  file.provenance = make_provenance(command_line(process_arguments()), options.curves);
+  write_fits(options.output, file);
+
+  for (const std::string& warning : fit_warnings(file.fits)) {
+    fmt::print(stderr, "hemibake: {}: warning: {}\n", options.curves, warning);
+  }
+  std::string text;
+  for (const NamedFit& named : file.fits) text += describe(named);
+  print_result(options.common, json_from_fits(file), text);
+  return 0;
+}
+
+}  // namespace
+
+CommandBody setup_fit(CLI::App& app) {
+  auto options = std::make_shared<FitOptions>();
+  std::vector<std::string> names;
+  std::string summaries;
+  for (const FitModel& model : fit_models()) {
+    names.emplace_back(model.name);
+    summaries += fmt::format("; {}: {}", model.name, model.summary);
+  }
+  app.add_option("CURVES", options->curves,
+                 "the curves, CSV as 'hemibake curves' writes it, or bin,E0,E1,… of 2018")
+      ->required();
+  app.add_option("-o,--output", options->output, "the fits to write, JSON")->required();
+  app.add_option("--model", options->models, "models to fit, separated by commas" + summaries)
+      ->delimiter(',')
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
+  app.add_option("--abscissa", options->abscissa,
+                 "where a bin stands on the AO axis; published: (j+1)/(bins-1) for bin j, as in 2018")
+      ->check(CLI::IsMember({"center", "published"}))
+      ->capture_default_str();
+  app.add_option("--weights", options->weights,
+                 "weight of a bin: none (all the same), its texel count, or 1/stderr² of its mean")
+      ->check(CLI::IsMember({"none", "count", "stderr"}))
+      ->capture_default_str();
+  add_common_options(app, options->common);
+  return [options] { return run_fit(*options); };
+}
+
+}  // namespace hemibake

@@ -1,0 +1,22 @@
+// Which file an error is about: what is below io/ knows the data, the command knows where they came from.
+#pragma once
+
+#include <filesystem>
+
+#include "core/error.h"
+
+namespace hemibake {
+
+// work(), with "FILE: " put before the message of an InputError or CheckError.
+template <class Work>
+auto name_file(const std::filesystem::path& path, Work work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw InputError(path.string() + ": " + error.what());
+  } catch (const CheckError& error) {
+    throw CheckError(path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace hemibake

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/bake_job.h"
+#include "cli/check_report.h"
+#include "cli/commands.h"
+#include "cli/common_options.h"
+#include "cli/file_checks.h"
+#include "cli/name_file.h"
+#include "core/error.h"
+#include "curves/curves.h"
+#include "fitting/models.h"
+#include "io/bake_file.h"
+#include "io/curves_file.h"
+#include "io/fit_file.h"
+#include "io/output_file.h"
+
+namespace hemibake {
+namespace {
+
+struct RunOptions {
+  CommonOptions common;
+  BakeOptions bake;
+  std::filesystem::path folder;
+  int bins = 100;
+};
+
+// The folder may be new; its parent may not.
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directory(folder, error);
+  if (error || !std::filesystem::is_directory(folder))
+    throw InputError(fmt::format("{}: could not make the folder: {}, expected a folder or a new name in one", folder.string(),
+                                 error ? error.message() : "a file of that name is there"));
+}
+
+FitFile fit_all(const Curves& curves, const Provenance& provenance) {
+  FitFile file;
+  file.provenance = provenance;
+  for (const char* model : {"published", "bounded"})
+    for (NamedFit& named : fit_model(model, curves, Abscissa::center, Weights::none)) file.fits.push_back(std::move(named));
+  return file;
+}
+
+std::string describe_fits(const FitFile& file) {
+  std::string text;
+  for (const NamedFit& named : file.fits) {
+    text += fmt::format("{:9}", named.name);
+    for (const FitParameter& parameter : named.fit.parameters) {
+      text += fmt::format(" {} = {:.5g}", parameter.name, parameter.value);
+      if (parameter.standard_error) text += fmt::format(" ± {:.2g}", *parameter.standard_error);
+      text += ',';
+    }
+    text += fmt::format(" rms {:.5f}\n", named.fit.rms);
+  }
+  return text;
+}
+
+int run_all(const CLI::App& app, RunOptions& options) {
+  apply_common_options(options.common);
+  settle_bake_options(app, options.bake);
+  if (!options.bake.wants("ao") || !options.bake.wants("irradiance"))
+    throw InputError("--outputs: curves need ao and irradiance, expected both among them");
+  if (!options.bake.links.empty()) check_output_path(options.bake.links, {".h5", ".hdf5"});
+  make_folder(options.folder);
+  for (const char* name : {"bake.exr", "curves.csv", "fit.json", "check.json"}) check_output_path(options.folder / name);
+
+  BakeJob job;
+  prepare_bake(options.bake, false, job);
+  const BakeResult result = perform_bake(job);
+  const BakeFile bake{result.bake, result.provenance};
+  write_bake(options.folder / "bake.exr", bake.bake, bake.provenance);
+
+  const Curves curves = make_curves(bake.bake, options.bins);
+  write_curves(options.folder / "curves.csv", curves);
+
+  Checks checks = checks_of_bake(bake, std::nullopt);
+  write_json(options.folder / "check.json", json_from_checks(checks));
+  for (const std::string& warning : result.warnings)
+    fmt::print(stderr, "hemibake: {}: warning: {}\n", options.bake.map.string(), warning);
+
+  const FitFile fits = name_file(options.bake.map, [&] { return fit_all(curves, bake.provenance); });
+  write_fits(options.folder / "fit.json", fits);
+  for (const std::string& warning : fit_warnings(fits.fits))
+    fmt::print(stderr, "hemibake: {}: warning: {}\n", options.bake.map.string(), warning);
+
+  nlohmann::ordered_json json = json_from_bake(job, result);
+  json["fits"] = json_from_fits(fits);
+  json["fits"].erase("provenance");
+  json["check"] = json_from_checks(checks);
+  print_result(options.common, json, describe_bake(job, result) + describe_fits(fits) + table_from_checks(checks));
+  return all_passed(checks) ? 0 : 1;
+}
+
+}  // namespace
+
+CommandBody setup_run(CLI::App& app) {
+  auto options = std::make_shared<RunOptions>();
+  add_bake_options(app, options->bake);
+  app.add_option("-o,--output", options->folder, "folder for bake.exr, curves.csv, fit.json and check.json; made if new")
+      ->required()->option_text("DIR")->group("Output");
+  app.add_option("--bins", options->bins, "bins of the curves on the AO axis")
+      ->check(CLI::Range(1, 65536))->capture_default_str()->group("Output");
+  add_common_options(app, options->common);
+  return [&app, options] { return run_all(app, *options); };
+}
+
+}  // namespace hemibake

@@ -1,0 +1,65 @@
+#include "curves/check_curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/constants.h"
+
+namespace hemibake {
+namespace {
+
+// By how much a value is outside low..high; NaN stays NaN and fails.
+double outside(double value, double low, double high) {
+  if (std::isnan(value)) return value;
+  return std::max({0.0, low - value, value - high});
+}
+
+// The worst bin of one kind of violation.
+struct Worst {
+  double value = 0;
+  size_t bin = 0;
+
+  void offer(double candidate, size_t index) {
+    if (std::isnan(candidate) || candidate > value) *this = {candidate, index};
+  }
+  Check check(const char* quantity, double tolerance) const {
+    return {quantity, value, 0, tolerance, value > 0 ? fmt::format("bin {}", bin) : ""};
+  }
+};
+
+}  // namespace
+
+Checks check_curves(const Curves& curves, double tolerance, bool require_whole_energy) {
+  Worst ao, direct, range, excess;
+  double sum_furthest_from_1 = 1;
+  size_t furthest_bin = 0;
+  for (size_t b = 0; b < curves.bins.size(); ++b) {
+    const CurveBin& bin = curves.bins[b];
+    if (bin.count <= 0) continue;
+    if (curves.has_counts) ao.offer(outside(bin.ao_mean, bin.ao_low, bin.ao_high), b);
+    // Both bounds rise with α, so the ends of the bin bound the mean of its texels.
+    const double low = bin.ao_low * bin.ao_low, high = bin.ao_high * (2 - bin.ao_high);
+    direct.offer(outside(bin.bounces.front().mean / kPi, low, high), b);
+    double sum = 0;
+    for (const BounceStatistics& bounce : bin.bounces) {
+      range.offer(outside(bounce.mean / kPi, 0, 1), b);
+      sum += bounce.mean / kPi;
+    }
+    excess.offer(std::isnan(sum) ? sum : std::max(0.0, sum - 1), b);
+    if (!(std::abs(sum - 1) <= std::abs(sum_furthest_from_1 - 1))) {
+      sum_furthest_from_1 = sum;
+      furthest_bin = b;
+    }
+  }
+  const double judged = require_whole_energy ? tolerance : std::numeric_limits<double>::infinity();
+  return {ao.check("mean ao outside its bin, worst", 1e-6),
+          direct.check("E0/pi outside ao^2 .. ao(2-ao), worst bin", tolerance),
+          range.check("irradiance/pi outside 0..1, worst bin", tolerance),
+          excess.check("energy sum/pi above 1, worst bin", tolerance),
+          {"energy sum/pi, worst bin", sum_furthest_from_1, 1, judged, fmt::format("bin {}", furthest_bin)}};
+}
+
+}  // namespace hemibake

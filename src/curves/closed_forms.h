@@ -1,0 +1,90 @@
+// The formulas of the curves, F_b(α) = E_b/π at albedo 1, as templates: float and double for evaluation
+// (model/), Ceres' derivative-carrying numbers for fitting (fitting/). They are here, in the lowest folder
+// that both include, so that a fitted formula and an evaluated one cannot differ.
+//
+// X: the type of α (float or double); T: the type of the parameters (X, or a Ceres Jet over X).
+//
+// Source: B. Mayaux, "Study Notes: Improved Ambient Occlusion", 2018 (the notes).
+#pragma once
+
+#include <cmath>
+
+namespace hemibake {
+
+// 1 − α, and 0 where α exceeds 1: the published abscissa runs to 100/99.
+template <class X>
+X complement(X ao) {
+  return ao < X(1) ? X(1) - ao : X(0);
+}
+
+// F₀(α) = α(1 + k(1−α)^e), notes eq. 7 with k = ½, e = ¾. Below 1 everywhere where e >= 1 and 0 <= k <= 1.
+template <class T, class X>
+T direct_factor(X ao, const T& k, const T& e) {
+  using std::pow;
+  return ao * (T(1) + k * pow(complement(ao), e));
+}
+
+// F₁(α) = A α (1−α)^1.5 exp(−B α^¼), notes eq. 11.
+template <class T, class X>
+T first_bounce_factor(X ao, const T& a, const T& b) {
+  using std::exp;
+  using std::sqrt;
+  const X rest = complement(ao);
+  return ao * rest * sqrt(rest) * a * exp(-b * sqrt(sqrt(ao)));
+}
+
+// F_b(α) = A α (1−α)^1.5 exp(−B α^C), notes, "Summing the Curves": one set of A, B, C for each bounce b >= 1.
+// α > 0.
+template <class T, class X>
+T bounce_factor(X ao, const T& a, const T& b, const T& c) {
+  using std::exp;
+  using std::pow;
+  using std::sqrt;
+  const X rest = complement(ao);
+  return ao * rest * sqrt(rest) * a * exp(-b * pow(ao, c));
+}
+
+// The bounded model (fits/README.md says how it was chosen). With F₀ = α(1 + (1−α) s(α)) every s in 0..1 lies
+// between plain AO and α(2−α), the most that any surface lets in (all visible sky straight overhead); here s
+// = k0 + (k1 − k0) α², so that k0 and k1 in 0..1 are all the constraint there is, and F₀ rises from 0 to 1.
+template <class T, class X>
+T bounded_direct_factor(X ao, const T& k0, const T& k1) {
+  return ao * (T(1) + (X(1) - ao) * (k0 + (k1 - k0) * (ao * ao)));
+}
+
+// 1 − F₀ of the above, without the cancellation near α = 1.
+template <class T, class X>
+T bounded_blocked_factor(X ao, const T& k0, const T& k1) {
+  return (X(1) - ao) * (T(1) - ao * (k0 + (k1 - k0) * (ao * ao)));
+}
+
+// q = 1 − τ, the share of the light under way that each bounce sends out to the sky: F₀ⁿ. n = 1 is exact in a
+// spherical pit (every point sees every other alike); n < 1: light leaves sooner than a texel's own F₀ says.
+template <class T, class X>
+T escape_share(X direct, const T& n) {
+  using std::pow;
+  return pow(direct, n);
+}
+
+// E/π over all bounces, notes eq. 10 with F₁ = (1 − F₀)(1 − τ), so that all light is accounted for at albedo
+// 1: F₀ + (1 − F₀) ρq/(1 − ρ + ρq). The quotient is 0 where both its parts are (ρ = 1 in total darkness).
+// direct: F₀; blocked: 1 − F₀; escape: q; albedo: ρ; all 0..1. tiny: the smallest normal number of the type.
+template <class T, class X>
+T total_factor(const T& direct, const T& blocked, const T& escape, X albedo, X tiny) {
+  const T out = albedo * escape;
+  const T under_way = X(1) - albedo + out;
+  return direct + blocked * (under_way > T(tiny) ? out / under_way : T(0));
+}
+
+// Multi-bounce visibility as a cubic, Jimenez et al., "Practical Real-Time Strategies for Accurate Indirect
+// Occlusion", 2016, chapter 5, without its max(V, ·): ((aV + b)V + c)V with a = p0 ρ + p1, b = p2 ρ + p3, c =
+// p4 ρ + p5. visibility: E₀/π, the cosine-weighted visible fraction, not α.
+template <class T, class X>
+T jimenez_cubic(X visibility, X albedo, const T* p) {
+  const T a = p[0] * albedo + p[1];
+  const T b = p[2] * albedo + p[3];
+  const T c = p[4] * albedo + p[5];
+  return ((a * visibility + b) * visibility + c) * visibility;
+}
+
+}  // namespace hemibake

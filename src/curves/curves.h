@@ -1,0 +1,41 @@
+// Curves: irradiance against ambient occlusion. Texels are sorted into bins by their AO; each bin keeps mean
+// and spread of every bounce, because irradiance is not a function of AO and a mean without its spread hides
+// that.
+#pragma once
+
+#include <vector>
+
+#include "transport/bake.h"
+
+namespace hemibake {
+
+// Irradiance of one bounce over the texels of one bin, 0..π at albedo 1.
+struct BounceStatistics {
+  double mean = 0;
+  double stddev = 0;  // of the texels, not of the mean; divides by the count
+};
+
+struct CurveBin {
+  double ao_low = 0;  // ao_low <= α < ao_high; the last bin holds α = 1 too
+  double ao_high = 0;
+  double ao_mean = 0;                     // of the texels in the bin
+  double count = 0;                       // texels, a whole number; 0: nothing below is meaningful
+  std::vector<BounceStatistics> bounces;  // E_0, E_1, …
+};
+
+struct Curves {
+  int bounce_count = 0;    // curves in each bin: 1 (E_0 only) and up
+  bool has_counts = true;  // false: read from a file with means only; counts are then 1 and deviations 0
+  std::vector<CurveBin> bins;
+};
+
+// Centre of a bin on the AO axis, 0..1.
+double bin_center(const CurveBin& bin);
+
+// The histogram of a bake: bin min(bins − 1, ⌊bins · α⌋), sums in double in texel order.
+// bake: planes `visible_fraction` (0..1) and at least one of `irradiance` (0..), all of the same size.
+// bins: 1 and up.
+// Throws InputError ("what was wrong, what was expected", no file) on a missing plane or an unusable texel.
+Curves make_curves(const Bake& bake, int bins);
+
+}  // namespace hemibake

@@ -1,0 +1,144 @@
+#include "fitting/fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "core/constants.h"
+#include "core/error.h"
+
+namespace hemibake {
+namespace {
+
+// Smallest standard error of a bin's mean of E/π that is believed. A bin of flat ground has no spread at all,
+// and would outweigh every other without limit; the rays of a bake leave about this much.
+constexpr double kSmallestStandardError = 1e-4;
+
+constexpr std::array kAbscissas = {std::pair{Abscissa::center, "center"},
+                                   std::pair{Abscissa::published, "published"}};
+constexpr std::array kWeights = {std::pair{Weights::none, "none"}, std::pair{Weights::count, "count"},
+                                 std::pair{Weights::standard_error, "stderr"}};
+
+template <class Table, class Value>
+std::string name_of(const Table& table, Value value) {
+  for (const auto& [entry, name] : table) {
+    if (entry == value) return name;
+  }
+  throw std::logic_error("a value without a name");
+}
+
+template <class Table>
+auto value_of(const Table& table, const std::string& text) {
+  std::string known;
+  for (const auto& [entry, name] : table) {
+    if (text == name) return entry;
+    known += (known.empty() ? "" : ", ") + std::string(name);
+  }
+  throw InputError(fmt::format("'{}', expected one of {}", text, known));
+}
+
+double raw_weight(double count, double stddev_over_pi, Weights weights) {
+  switch (weights) {
+    case Weights::none:
+      return 1;
+    case Weights::count:
+      return count;
+    case Weights::standard_error:
+      return 1 / std::max(stddev_over_pi * stddev_over_pi / count,
+                          kSmallestStandardError * kSmallestStandardError);
+  }
+  throw std::logic_error("weights of an unknown kind");
+}
+
+struct BinPosition {
+  const CurveBin* bin;
+  double ao;
+};
+
+std::vector<BinPosition> usable_bins(const Curves& curves, Abscissa abscissa, Weights weights) {
+  if (weights != Weights::none && !curves.has_counts) {
+    throw InputError(fmt::format(
+        "curves without counts, expected columns count and E00_stddev for --weights {}", to_string(weights)));
+  }
+  if (abscissa == Abscissa::published && curves.bins.size() < 2) {
+    throw InputError("1 bin, expected at least 2 for --abscissa published");
+  }
+  std::vector<BinPosition> usable;
+  const double last = static_cast<double>(curves.bins.size()) - 1;
+  for (size_t j = 0; j < curves.bins.size(); ++j) {
+    const CurveBin& bin = curves.bins[j];
+    if (bin.count < (weights == Weights::standard_error ? 2 : 1)) continue;
+    usable.push_back(
+        {&bin, abscissa == Abscissa::center ? bin_center(bin) : static_cast<double>(j + 1) / last});
+  }
+  return usable;
+}
+
+void scale_to_mean_one(std::vector<CurvePoint>& points) {
+  double sum = 0;
+  for (const CurvePoint& point : points) sum += point.weight;
+  for (CurvePoint& point : points) point.weight *= static_cast<double>(points.size()) / sum;
+}
+
+}  // namespace
+
+std::vector<CurvePoint> curve_points(const Curves& curves, int bounce, Abscissa abscissa, Weights weights) {
+  std::vector<CurvePoint> points;
+  for (const auto& [bin, ao] : usable_bins(curves, abscissa, weights)) {
+    const BounceStatistics& statistics = bin->bounces.at(static_cast<size_t>(bounce));
+    points.push_back({ao, statistics.mean / kPi, raw_weight(bin->count, statistics.stddev / kPi, weights)});
+  }
+  scale_to_mean_one(points);
+  return points;
+}
+
+double total_over_pi(const CurveBin& bin, double albedo) {
+  double sum = 0, power = 1;
+  for (const BounceStatistics& bounce : bin.bounces) {
+    sum += power * bounce.mean;
+    power *= albedo;
+  }
+  const size_t count = bin.bounces.size();
+  if (count >= 3 && bin.bounces[count - 1].mean < bin.bounces[count - 2].mean) {
+    const double ratio = albedo * bin.bounces[count - 1].mean / bin.bounces[count - 2].mean;
+    sum += power * bin.bounces[count - 1].mean * (bin.bounces[count - 1].mean / bin.bounces[count - 2].mean) /
+           (1 - ratio);
+  }
+  return sum / kPi;
+}
+
+std::vector<CurvePoint> total_points(const Curves& curves, std::span<const double> albedos, Abscissa abscissa,
+                                     Weights weights) {
+  std::vector<CurvePoint> points;
+  for (const auto& [bin, ao] : usable_bins(curves, abscissa, weights)) {
+    for (const double albedo : albedos) {
+      double stddev = 0, power = 1;
+      for (const BounceStatistics& bounce : bin->bounces) {
+        stddev += power * bounce.stddev;
+        power *= albedo;
+      }
+      points.push_back(
+          {ao, total_over_pi(*bin, albedo), raw_weight(bin->count, stddev / kPi, weights), albedo});
+    }
+  }
+  scale_to_mean_one(points);
+  return points;
+}
+
+double parameter_value(const Fit& fit, const std::string& name) {
+  for (const FitParameter& parameter : fit.parameters) {
+    if (parameter.name == name) return parameter.value;
+  }
+  throw std::logic_error(fmt::format("fit of {} has no parameter {}", fit.model, name));
+}
+
+std::string to_string(Abscissa abscissa) { return name_of(kAbscissas, abscissa); }
+std::string to_string(Weights weights) { return name_of(kWeights, weights); }
+Abscissa abscissa_from_string(const std::string& text) { return value_of(kAbscissas, text); }
+Weights weights_from_string(const std::string& text) { return value_of(kWeights, text); }
+
+}  // namespace hemibake

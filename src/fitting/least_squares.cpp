@@ -1,0 +1,169 @@
+#include "fitting/least_squares.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <limits>
+
+#include "core/error.h"
+
+namespace hemibake {
+namespace {
+
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr int kMaxSteps = 1000;
+
+// Ratio of the smallest to the largest singular value of the Jacobian, its columns scaled to length 1, below
+// which the parameters are not determined: its square, the condition of JᵀJ, is then at the rounding of a
+// double.
+constexpr double kSmallestConditioning = 1e-7;
+
+// A parameter that, changed by its own size (or by 1), moves the curve by less than this (rms, E/π) is not
+// determined: the values themselves carry rounding of this order.
+constexpr double kSmallestEffect = 1e-12;
+
+struct Evaluation {
+  Eigen::VectorXd residuals;
+  Matrix jacobian;
+};
+
+Evaluation evaluate(const ceres::CostFunction& cost, const std::vector<double>& parameters) {
+  Evaluation result{Eigen::VectorXd(cost.num_residuals()), Matrix(cost.num_residuals(), parameters.size())};
+  const double* blocks[] = {parameters.data()};
+  double* jacobians[] = {result.jacobian.data()};
+  cost.Evaluate(blocks, result.residuals.data(), jacobians);
+  return result;
+}
+
+std::vector<double> best_start(const Formula& formula, const ceres::CostFunction& cost) {
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<double> best;
+  for (const std::vector<double>& start : formula.starts) {
+    const Evaluation at = evaluate(cost, start);
+    const double sum = at.residuals.squaredNorm();
+    if (sum < least && at.jacobian.allFinite()) {
+      least = sum;
+      best = start;
+    }
+  }
+  if (best.empty())
+    throw CheckError(fmt::format("fit of {}: no start gives finite residuals", formula.model));
+  return best;
+}
+
+std::vector<double> solve(const Formula& formula, ceres::CostFunction* cost, std::vector<double> parameters) {
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(ownership);
+  problem.AddResidualBlock(cost, nullptr, parameters.data());
+  for (size_t p = 0; p < parameters.size(); ++p) {
+    const ParameterRange& range = formula.parameters[p];
+    if (std::isfinite(range.lower))
+      problem.SetParameterLowerBound(parameters.data(), static_cast<int>(p), range.lower);
+    if (std::isfinite(range.upper))
+      problem.SetParameterUpperBound(parameters.data(), static_cast<int>(p), range.upper);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.logging_type = ceres::SILENT;
+  options.max_num_iterations = kMaxSteps;
+  options.function_tolerance = 1e-15;  // as far as doubles go: the constants are compared to 10⁻⁶ and better
+  options.gradient_tolerance = 1e-14;
+  options.parameter_tolerance = 1e-11;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (summary.termination_type != ceres::CONVERGENCE) {
+    throw CheckError(fmt::format("fit of {} did not converge: {}", formula.model, summary.message));
+  }
+  return parameters;
+}
+
+bool on_bound(const ParameterRange& range, double value) {
+  return value <= range.lower || value >= range.upper;
+}
+
+// s²(JᵀJ)⁻¹ over the parameters that are free; the rows and columns of those on a bound are 0.
+Matrix covariance(const Formula& formula, const Evaluation& at, const std::vector<double>& parameters,
+                  const std::vector<Eigen::Index>& free, double observations) {
+  const Eigen::Index all = at.jacobian.cols();
+  Matrix result = Matrix::Zero(all, all);
+  const Eigen::Index count = static_cast<Eigen::Index>(free.size());
+  if (count == 0) return result;
+  const Eigen::MatrixXd j = at.jacobian(Eigen::all, free);
+  const Eigen::VectorXd length = j.colwise().norm().transpose();
+  for (Eigen::Index c = 0; c < count; ++c) {
+    const size_t p = static_cast<size_t>(free[c]);
+    const double effect = length[c] * std::max(1.0, std::abs(parameters[p]));
+    if (effect > kSmallestEffect * std::sqrt(static_cast<double>(j.rows()))) continue;
+    throw CheckError(
+        fmt::format("fit of {}: the points do not determine {}", formula.model, formula.parameters[p].name));
+  }
+  const Eigen::MatrixXd scaled = j * length.cwiseInverse().asDiagonal();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinV);
+  const Eigen::VectorXd& singular = svd.singularValues();
+  if (singular[count - 1] < kSmallestConditioning * singular[0]) {
+    throw CheckError(fmt::format(
+        "fit of {}: the covariance is singular, the points do not determine every parameter", formula.model));
+  }
+  const double variance = at.residuals.squaredNorm() / (observations - static_cast<double>(count));
+  const Eigen::MatrixXd half =
+      length.cwiseInverse().asDiagonal() * svd.matrixV() * singular.cwiseInverse().asDiagonal();
+  result(free, free) = variance * half * half.transpose();
+  return result;
+}
+
+// Burnham & Anderson, "Model Selection and Multimodel Inference", 2002, eq. 7.3: n ln(Σ w r²/n) − Σ ln w, the
+// variance counted as one parameter more.
+// n: observations; the logarithm of a weight counts as its share of one.
+std::optional<double> small_sample_aic(const Evaluation& at, std::span<const CurvePoint> points, double n) {
+  const double share = n / static_cast<double>(points.size());
+  const double k = static_cast<double>(at.jacobian.cols()) + 1;
+  const double sum = at.residuals.squaredNorm();
+  if (n - k - 1 <= 0 || sum <= 0) return std::nullopt;
+  double log_weights = 0;
+  for (const CurvePoint& point : points) log_weights += std::log(point.weight);
+  return n * std::log(sum / static_cast<double>(points.size())) - share * log_weights + 2 * k +
+         2 * k * (k + 1) / (n - k - 1);
+}
+
+}  // namespace
+
+Fit minimize(const Formula& formula, std::span<const CurvePoint> points,
+             std::unique_ptr<ceres::CostFunction> cost) {
+  const size_t count = formula.parameters.size();
+  const size_t observations = points.size() / static_cast<size_t>(formula.points_per_observation);
+  if (observations <= count) {
+    throw InputError(fmt::format("{} usable bins, expected at least {} for the {} parameters of {}",
+                                 observations, count + 1, count, formula.model));
+  }
+  const std::vector<double> found = solve(formula, cost.get(), best_start(formula, *cost));
+  const Evaluation at = evaluate(*cost, found);
+  std::vector<Eigen::Index> free;
+  for (size_t p = 0; p < count; ++p) {
+    if (!on_bound(formula.parameters[p], found[p])) free.push_back(static_cast<Eigen::Index>(p));
+  }
+  const Matrix spread = covariance(formula, at, found, free, static_cast<double>(observations));
+
+  Fit fit;
+  fit.model = formula.model;
+  fit.formula = formula.text;
+  for (size_t p = 0; p < count; ++p)
+    fit.parameters.push_back({formula.parameters[p].name, found[p], std::nullopt});
+  for (const Eigen::Index p : free)
+    fit.parameters[static_cast<size_t>(p)].standard_error = std::sqrt(spread(p, p));
+  fit.covariance.assign(spread.data(), spread.data() + spread.size());
+  double sum = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double error = at.residuals[static_cast<Eigen::Index>(i)] / std::sqrt(points[i].weight);
+    sum += error * error;
+    fit.max_error = std::max(fit.max_error, std::abs(error));
+  }
+  fit.rms = std::sqrt(sum / static_cast<double>(points.size()));
+  fit.points = static_cast<int>(points.size());
+  fit.aicc = small_sample_aic(at, points, static_cast<double>(observations));
+  return fit;
+}
+
+}  // namespace hemibake

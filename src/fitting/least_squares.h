@@ -1,0 +1,79 @@
+// Bounded nonlinear least squares of a formula to curve points, by Ceres. Only for the .cpp files of this
+// folder.
+#pragma once
+
+#include <ceres/ceres.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fitting/fit.h"
+
+namespace hemibake {
+
+struct ParameterRange {
+  std::string name;
+  double lower = -HUGE_VAL;
+  double upper = HUGE_VAL;
+};
+
+// A formula as the fit sees it; its values come from a cost function beside it.
+struct Formula {
+  std::string model;  // as in FIT.json
+  std::string text;   // the formula for a human
+  std::vector<ParameterRange> parameters;
+  std::vector<std::vector<double>> starts;  // parameter sets to begin from; the one of least cost is taken
+  int points_per_observation = 1;           // points that share one error (fit.h, "observation")
+};
+
+// Residuals √w·(formula − value) of `points`, differentiated by Ceres.
+// value: callable as T value(const T* parameters, const CurvePoint&) for T double and a Jet; N: parameters.
+template <int N, class Value>
+class CurveResiduals {
+ public:
+  CurveResiduals(std::span<const CurvePoint> points, Value value) : points_(points), value_(value) {}
+
+  template <class T>
+  bool operator()(const T* parameters, T* residuals) const {
+    for (size_t i = 0; i < points_.size(); ++i) {
+      residuals[i] = std::sqrt(points_[i].weight) * (value_(parameters, points_[i]) - points_[i].value);
+    }
+    return true;
+  }
+
+ private:
+  std::span<const CurvePoint> points_;
+  Value value_;
+};
+
+// Minimises ½ Σ residual² within the bounds. Throws InputError where there are not more points than
+// parameters, CheckError where the minimisation does not converge or the points do not determine every
+// parameter. cost: n × N residuals as above, over `points`.
+Fit minimize(const Formula& formula, std::span<const CurvePoint> points,
+             std::unique_ptr<ceres::CostFunction> cost);
+
+template <int N, class Value>
+Fit fit_formula(const Formula& formula, std::span<const CurvePoint> points, Value value) {
+  using Residuals = CurveResiduals<N, Value>;
+  using Cost = ceres::AutoDiffCostFunction<Residuals, ceres::DYNAMIC, N>;
+  return minimize(formula, points,
+                  std::make_unique<Cost>(new Residuals(points, value), static_cast<int>(points.size())));
+}
+
+// The factor s that minimises Σ w (s·shape(α) − value)²; 0 where the shape vanishes at every point.
+template <class Shape>
+double best_scale(std::span<const CurvePoint> points, Shape shape) {
+  double product = 0, square = 0;
+  for (const CurvePoint& point : points) {
+    const double s = shape(point.ao);
+    product += point.weight * s * point.value;
+    square += point.weight * s * s;
+  }
+  return square > 0 ? product / square : 0;
+}
+
+}  // namespace hemibake

@@ -1,0 +1,111 @@
+#include "io/bake_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "core/error.h"
+#include "io/image_io.h"
+#include "io/output_file.h"
+
+namespace hemibake {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string irradiance_channel(size_t bounce) { return fmt::format("irradiance.{:02}", bounce); }
+
+template <class Value, class Values>
+void append_vector_planes(std::vector<BasicPlane<Value>>& planes, const std::string& name, Values& grid) {
+  if (grid.empty()) return;
+  planes.push_back({name + ".X", &grid.values[0].x, 3});
+  planes.push_back({name + ".Y", &grid.values[0].y, 3});
+  planes.push_back({name + ".Z", &grid.values[0].z, 3});
+}
+
+// The channels of every plane that is there, to be written from or read into.
+template <class Value, class BakeType>
+std::vector<BasicPlane<Value>> planes_of(BakeType& bake) {
+  std::vector<BasicPlane<Value>> planes;
+  if (!bake.visible_fraction.empty()) planes.push_back({"ao", bake.visible_fraction.values.data()});
+  for (size_t b = 0; b < bake.irradiance.size(); ++b)
+    planes.push_back({irradiance_channel(b), bake.irradiance[b].values.data()});
+  if (!bake.total.empty()) planes.push_back({"total", bake.total.values.data()});
+  if (!bake.residual.empty()) planes.push_back({"residual", bake.residual.values.data()});
+  append_vector_planes(planes, "normal", bake.normals);
+  append_vector_planes(planes, "bent", bake.bent_normals);
+  return planes;
+}
+
+template <class T>
+void check_size(const Bake& bake, const Grid<T>& grid, const char* name) {
+  if (grid.empty()) return;
+  expect_equal(grid.width, bake.width, fmt::format("width of plane {} of a bake", name));
+  expect_equal(grid.height, bake.height, fmt::format("height of plane {} of a bake", name));
+}
+
+void check_sizes(const Bake& bake) {
+  check_size(bake, bake.visible_fraction, "ao");
+  for (const Grid<float>& plane : bake.irradiance) {
+    if (plane.empty()) throw std::logic_error("an irradiance plane of a bake is empty");
+    check_size(bake, plane, "irradiance");
+  }
+  check_size(bake, bake.total, "total");
+  check_size(bake, bake.residual, "residual");
+  check_size(bake, bake.normals, "normal");
+  check_size(bake, bake.bent_normals, "bent");
+}
+
+// A bake with room for the planes whose channels are there; read_planes refuses what is there only in part.
+Bake make_room(const fs::path& path, const ImageHeader& header) {
+  const auto count = [&](std::string_view start) {
+    return static_cast<size_t>(
+        std::count_if(header.channels.begin(), header.channels.end(),
+                      [&](const std::string& channel) { return channel.starts_with(start); }));
+  };
+  const auto has = [&](std::string_view name) {
+    return std::find(header.channels.begin(), header.channels.end(), name) != header.channels.end();
+  };
+  Bake bake;
+  bake.width = header.width;
+  bake.height = header.height;
+  const auto make_plane = [&](auto& plane) {
+    plane = std::remove_reference_t<decltype(plane)>(header.width, header.height);
+  };
+  if (has("ao")) make_plane(bake.visible_fraction);
+  bake.irradiance.resize(count("irradiance."));
+  for (Grid<float>& plane : bake.irradiance) make_plane(plane);
+  if (has("total")) make_plane(bake.total);
+  if (has("residual")) make_plane(bake.residual);
+  if (count("normal.") > 0) make_plane(bake.normals);
+  if (count("bent.") > 0) make_plane(bake.bent_normals);
+  if (planes_of<float>(bake).empty())
+    throw InputError(fmt::format(
+        "{}: holds none of the channels of a bake, expected a file of `hemibake bake`", path.string()));
+  return bake;
+}
+
+}  // namespace
+
+void write_bake(const fs::path& path, const Bake& bake, const Provenance& provenance) {
+  check_sizes(bake);
+  if (lower_case_extension(path) != ".exr")
+    throw InputError(fmt::format("{}: a bake cannot be written as '{}', expected .exr", path.string(),
+                                 path.extension().string()));
+  write_image(path, bake.width, bake.height, planes_of<const float>(bake), provenance);
+}
+
+BakeFile read_bake(const fs::path& path) {
+  const ImageHeader header = read_image_header(path);
+  if (!header.provenance.is_object())
+    throw InputError(
+        fmt::format("{}: has no hemibake attributes, expected a file of `hemibake bake`", path.string()));
+  BakeFile file{make_room(path, header), header.provenance};
+  read_planes(path, header.width, header.height, planes_of<float>(file.bake));
+  return file;
+}
+
+}  // namespace hemibake

@@ -1,0 +1,28 @@
+// Fits as JSON: {"F0": FIT, "F1": FIT, …, "provenance": {…}}, each FIT {"model", "formula", "parameters":
+// {"A":
+// {"value", "stderr"}, …}, "covariance": rows, "rms", "max_error", "points", "aicc", "abscissa", "weights"}.
+// A stderr or aicc that does not exist (fitting/fit.h says when) is null.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "fitting/fit.h"
+#include "io/provenance.h"
+
+namespace hemibake {
+
+struct FitFile {
+  std::vector<NamedFit> fits;
+  Provenance provenance;
+};
+
+nlohmann::ordered_json json_from_fits(const FitFile& file);
+
+// Throws InputError "FILE: NAME: …, expected …"; `path` names the file only.
+FitFile fits_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
+
+FitFile read_fits(const std::filesystem::path& path);
+void write_fits(const std::filesystem::path& path, const FitFile& file);
+
+}  // namespace hemibake

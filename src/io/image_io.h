@@ -1,0 +1,73 @@
+// Images in and out, as numbers: no colour transform, no premultiplication, ever. Integer formats stand for
+// 0..1 (value / largest value), float formats for themselves. The one place that knows OpenImageIO.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/grid.h"
+#include "io/provenance.h"
+
+namespace hemibake {
+
+// What an image says of itself. Reading it takes no memory that depends on the size it claims.
+struct ImageHeader {
+  int width = 0;
+  int height = 0;
+  std::vector<std::string> channels;
+  Provenance provenance;  // as given to the writing functions below; null where the file has none
+};
+
+// A channel lying in memory: the value of texel i at first[i * stride].
+template <class Value>
+struct BasicPlane {
+  std::string channel;
+  Value* first;
+  size_t stride = 1;
+};
+using Plane = BasicPlane<const float>;
+using MutablePlane = BasicPlane<float>;
+
+// Every reading function throws InputError naming the file where it is missing, a folder, not an image, cut
+// short, empty, larger than kMaxTexels, deep, a volume, several images in one, or an EXR whose data window is
+// not its display window; and naming channel and texel for a value read that is not finite.
+
+ImageHeader read_image_header(const std::filesystem::path& path);
+
+// Fills `planes`, each with room for width × height values, from the channels of those names, all in one
+// pass. Throws InputError where a channel is not there or the size is another.
+void read_planes(const std::filesystem::path& path, int width, int height,
+                 std::span<const MutablePlane> planes);
+
+// One channel. `channel`: its name (any case where only one fits so) or its index from 0; empty: the only
+// one, or green
+// (`G`), or the luminance (`Y`). Throws InputError listing the channels there are where that does not choose
+// one.
+Grid<float> read_height_map(const std::filesystem::path& path, const std::string& channel = "");
+
+// The first three channels, 0..1. Throws InputError naming both sizes where it is not width × height.
+Grid<glm::vec3> read_normal_map(const std::filesystem::path& path, int width, int height);
+
+// Writes planes of width × height: `.exr` as 32-bit float (lossless), `.png` as 16-bit integers (one to four
+// planes of 0..1, to nearest). The entries of `provenance` become attributes `hemibake:NAME`: strings,
+// doubles and ints; booleans as 0 or 1; integers beyond 32 bits as decimal strings; and `hemibake:provenance`
+// holds all of them as JSON, which is what read_image_header reads back. Throws std::logic_error naming
+// channel and texel for a value that is not finite; InputError for another extension, a value outside 0..1 in
+// a PNG, and where the file cannot be written.
+void write_image(const std::filesystem::path& path, int width, int height, std::span<const Plane> planes,
+                 const Provenance& provenance);
+
+// One channel `Y`, as write_image.
+void write_height_map(const std::filesystem::path& path, const Grid<float>& heights,
+                      const Provenance& provenance);
+
+// An 8-bit sRGB PNG of values already encoded for display; below 0 and above 1 are clamped. Errors as
+// write_image.
+void write_png8_rgb(const std::filesystem::path& path, const Grid<glm::vec3>& picture,
+                    const Provenance& provenance);
+
+}  // namespace hemibake

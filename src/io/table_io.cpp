@@ -1,0 +1,159 @@
+#include "io/table_io.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "core/error.h"
+#include "io/output_file.h"
+
+namespace hemibake {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+std::string read_text(const fs::path& path) {
+  if (fs::is_directory(path))
+    throw InputError(fmt::format("{}: is a folder, expected a file", path.string()));
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (file && file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
+  if (!file.is_open() || file.bad() || text.bad())
+    throw InputError(fmt::format("{}: could not read: {}", path.string(), std::strerror(errno)));
+  return std::move(text).str();
+}
+
+// Pieces between separators: one more than there are separators.
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> pieces;
+  for (;;) {
+    const size_t end = text.find(separator);
+    pieces.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return pieces;
+    text.remove_prefix(end + 1);
+  }
+}
+
+std::vector<std::string_view> split_lines(std::string_view text) {
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  std::vector<std::string_view> lines = split(text, '\n');
+  if (lines.back().empty()) lines.pop_back();  // after the last line end
+  for (std::string_view& line : lines)
+    if (line.ends_with('\r')) line.remove_suffix(1);
+  return lines;
+}
+
+// What is wrong with the column names; empty where nothing is.
+std::string complaint_about_columns(const std::vector<std::string>& columns) {
+  for (size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].empty()) return fmt::format("column {} has no name", i + 1);
+    if (std::find(columns.begin(), columns.begin() + static_cast<ptrdiff_t>(i), columns[i]) !=
+        columns.begin() + static_cast<ptrdiff_t>(i))
+      return fmt::format("column '{}' is there twice", columns[i]);
+  }
+  return "";
+}
+
+std::optional<double> parse_cell(std::string_view cell, const std::string& place) {
+  if (cell.empty()) return std::nullopt;
+  double value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value))
+    throw InputError(fmt::format(
+        "{}: {} is not usable, expected a finite number or nothing", place,
+        nlohmann::json(cell.substr(0, 40)).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)));
+  return value;
+}
+
+void check_finite(const nlohmann::ordered_json& json, const std::string& place) {
+  if (json.is_number_float() && !std::isfinite(json.get<double>()))
+    throw std::logic_error(
+        fmt::format("internal check failed: {} is {}, expected a finite number", place, json.get<double>()));
+  if (json.is_structured())
+    for (const auto& [name, value] : json.items()) check_finite(value, place + "/" + name);
+}
+
+}  // namespace
+
+Table read_csv(const fs::path& path) {
+  const std::string text = read_text(path);
+  const std::vector<std::string_view> lines = split_lines(text);
+  if (lines.empty())
+    throw InputError(fmt::format("{}: is empty, expected a line of column names", path.string()));
+  Table table;
+  for (const std::string_view name : split(lines[0], ',')) table.columns.emplace_back(name);
+  if (const std::string complaint = complaint_about_columns(table.columns); !complaint.empty())
+    throw InputError(fmt::format("{}:1: {}, expected a name of its own for each", path.string(), complaint));
+  for (size_t i = 1; i < lines.size(); ++i) {
+    const std::vector<std::string_view> cells = split(lines[i], ',');
+    if (cells.size() != table.columns.size())
+      throw InputError(fmt::format("{}:{}: has {} cells, expected {} as in the first line", path.string(),
+                                   i + 1, cells.size(), table.columns.size()));
+    auto& row = table.rows.emplace_back();
+    for (size_t c = 0; c < cells.size(); ++c)
+      row.push_back(
+          parse_cell(cells[c], fmt::format("{}:{}: column '{}'", path.string(), i + 1, table.columns[c])));
+  }
+  return table;
+}
+
+void write_csv(const fs::path& path, const Table& table) {
+  if (table.columns.empty()) throw std::logic_error("a table to write has no columns");
+  if (const std::string complaint = complaint_about_columns(table.columns); !complaint.empty())
+    throw std::logic_error("a table to write: " + complaint);
+  std::string text = fmt::format("{}\n", fmt::join(table.columns, ","));
+  if (text.find_first_of("\n\r\"") != text.size() - 1 ||
+      std::count(text.begin(), text.end(), ',') + 1 != static_cast<ptrdiff_t>(table.columns.size()))
+    throw std::logic_error("a column name to write holds a comma, a quote or a line end");
+  for (size_t i = 0; i < table.rows.size(); ++i) {
+    expect_equal(table.rows[i].size(), table.columns.size(), fmt::format("cells in row {} to write", i));
+    for (size_t c = 0; c < table.columns.size(); ++c) {
+      const std::optional<double>& cell = table.rows[i][c];
+      if (cell && !std::isfinite(*cell))
+        throw std::logic_error(fmt::format("internal check failed: row {} of column '{}' to write is {}", i,
+                                           table.columns[c], *cell));
+      if (c > 0) text += ',';
+      if (cell) fmt::format_to(std::back_inserter(text), "{}", *cell);
+    }
+    text += '\n';
+  }
+  OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+std::optional<size_t> find_column(const Table& table, std::string_view name) {
+  const auto found = std::find(table.columns.begin(), table.columns.end(), name);
+  if (found == table.columns.end()) return std::nullopt;
+  return static_cast<size_t>(found - table.columns.begin());
+}
+
+nlohmann::ordered_json read_json(const fs::path& path) {
+  const std::string text = read_text(path);
+  try {
+    return nlohmann::ordered_json::parse(text);
+  } catch (const nlohmann::ordered_json::exception& error) {
+    // "[json.exception.parse_error.101] parse error at line 1, column 2: …": the position is what helps.
+    const std::string_view what = error.what();
+    throw InputError(fmt::format("{}: {}, expected JSON", path.string(), what.substr(what.find("] ") + 2)));
+  }
+}
+
+void write_json(const fs::path& path, const nlohmann::ordered_json& json) {
+  check_finite(json, path.filename().string());
+  OutputFile file(path);
+  file.write(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  file.commit();
+}
+
+}  // namespace hemibake

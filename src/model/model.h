@@ -1,0 +1,124 @@
+// The fitted models, evaluated in float or double as a shader would: irradiance relative to that of an open
+// surface (E/π under a sky of radiance 1), from ambient occlusion and albedo. Formulas:
+// curves/closed_forms.h.
+//
+// Every model gives, for ao = α and albedo = ρ in 0..1, ends included:
+//   direct(α)        F₀, the light that comes straight from the sky
+//   first_bounce(α)  F₁, the light of one bounce at albedo 1
+//   bounce_ratio(α)  τ, each further bounce over the one before, at albedo 1
+//   total(α, ρ)      F₀ + ρF₁/(1 − ρτ), all bounces
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "curves/closed_forms.h"
+
+namespace hemibake {
+
+// All of 0..1: F₀, F₁ and the total, which rises with α and ρ; τ too, and below 1 for α > 0. F₀ + F₁/(1 − τ)
+// = 1.
+struct BoundedModel {
+  double k0 = 0;  // 0..1
+  double k1 = 0;  // 0..1
+  double n = 1;   // above 0
+
+  template <class T>
+  T direct(T ao) const {
+    return bounded_direct_factor(ao, static_cast<T>(k0), static_cast<T>(k1));
+  }
+  template <class T>
+  T blocked(T ao) const {
+    return bounded_blocked_factor(ao, static_cast<T>(k0), static_cast<T>(k1));
+  }
+  template <class T>
+  T escape(T ao) const {
+    return escape_share(direct(ao), static_cast<T>(n));
+  }
+  template <class T>
+  T first_bounce(T ao) const {
+    return blocked(ao) * escape(ao);
+  }
+  template <class T>
+  T bounce_ratio(T ao) const {
+    return 1 - escape(ao);
+  }
+  template <class T>
+  T total(T ao, T albedo) const {
+    return total_factor(direct(ao), blocked(ao), escape(ao), albedo, std::numeric_limits<T>::min());
+  }
+};
+
+// The model of the notes of 2018 as it stands, eq. 7, 9, 10, 11. F₀ exceeds 1 for α above 0.949253 with the
+// published constants; from α = 0.8 on τ leaves 0..1, and the total has poles near there at every ρ below 1.
+struct PublishedModel {
+  double k = 0.5;
+  double e = 0.75;
+  double a = 27.576937094210385;
+  double b = 3.3364392003423804;
+
+  template <class T>
+  T direct(T ao) const {
+    return direct_factor(ao, static_cast<T>(k), static_cast<T>(e));
+  }
+  template <class T>
+  T first_bounce(T ao) const {
+    return first_bounce_factor(ao, static_cast<T>(a), static_cast<T>(b));
+  }
+  template <class T>
+  T bounce_ratio(T ao) const {
+    return 1 - first_bounce(ao) / (1 - direct(ao));
+  }
+  template <class T>
+  T total(T ao, T albedo) const {
+    return direct(ao) + albedo * first_bounce(ao) / (1 - albedo * bounce_ratio(ao));
+  }
+};
+
+// The same with F₀ cut off at 1 and τ at 0 and 1: within 0..1 everywhere, equal to the published model
+// wherever that one is sound. What `export` writes for published constants.
+struct GuardedModel {
+  PublishedModel published;
+
+  template <class T>
+  T direct(T ao) const {
+    return std::clamp(published.direct(ao), T(0), T(1));
+  }
+  template <class T>
+  T escape(T ao) const {
+    const T blocked = 1 - direct(ao);
+    const T first = std::max(published.first_bounce(ao), T(0));
+    return first < blocked ? first / blocked : T(1);
+  }
+  template <class T>
+  T first_bounce(T ao) const {
+    return (1 - direct(ao)) * escape(ao);
+  }
+  template <class T>
+  T bounce_ratio(T ao) const {
+    return 1 - escape(ao);
+  }
+  template <class T>
+  T total(T ao, T albedo) const {
+    const T from_sky = direct(ao);
+    return total_factor(from_sky, 1 - from_sky, escape(ao), albedo, std::numeric_limits<T>::min());
+  }
+};
+
+// Jimenez et al. 2016 (closed_forms.h, jimenez_cubic), by default with their constants. No F₁ or τ: all
+// bounces at once. visibility: E₀/π, the cosine-weighted visible fraction; with α instead it is wrong by the
+// difference of the two.
+struct JimenezModel {
+  std::array<double, 6> parameters = {2.0404, -0.3324, -4.7951, 0.6417, 2.7552, 0.6903};
+
+  template <class T>
+  T total(T visibility, T albedo) const {
+    std::array<T, 6> p;
+    std::transform(parameters.begin(), parameters.end(), p.begin(),
+                   [](double v) { return static_cast<T>(v); });
+    return std::max(visibility, jimenez_cubic(visibility, albedo, p.data()));
+  }
+};
+
+}  // namespace hemibake

@@ -1,0 +1,92 @@
+// The referee: an unbiased path tracer that the bake is judged by. It includes nothing of the tracers, the
+// transport or the direction sets: its own ray walk in double precision, its own random numbers, its own
+// estimator.
+//
+// A path starts at a receiver, cosine-distributed about the receiver's normal. Where it meets the surface it
+// goes on from the exact point, cosine-distributed about the facet's own normal. E_b/π is the probability
+// that it escapes after exactly b reflections, the total at albedo ρ is the mean of ρᵇ. There is no clamp,
+// and no bounce is the last.
+//
+// Starts and hits are lifted vertically before going on, by a millionth of a texel unless asked otherwise.
+// Rays cannot leak (height_walk.h), so the lift only has to clear rounding, and it says which of the facets
+// around a texel centre is met by directions below the ground: the limit is the surface itself. What it
+// changes is of the order of lift · ln(1/lift) over the distance to what is seen: 0.8 % of E_5 in a groove of
+// 2 texels at 10⁻³, too little to measure at 10⁻⁶. (Means of rough maps do not show 10⁻⁴ to 10⁻² either; a
+// test runs them.)
+//
+// Splitting: paths run in groups of 64. After every bounce the paths of a group that hit are copied (or
+// thinned) to 64 again by systematic resampling, each copy carrying the same share of their weight: a hit
+// point with weight w of the group's S has on average 64 w/S copies of weight S/64, so every estimate stays
+// unbiased, while late bounces get as many paths as the first. (Gordon, Salmond, Smith, "Novel approach to
+// nonlinear/non-Gaussian Bayesian state estimation", 1993; unbiasedness: Del Moral, "Feynman-Kac Formulae",
+// 2004, 7.4.) Paths within a group are dependent, groups are not: standard errors come from the spread
+// between groups. After the last bounce wanted for itself, paths go on without splitting, ended by Russian
+// roulette at the largest albedo a total still needs.
+//
+// The bytes of every result are the same at any thread count.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "surface/surface.h"
+
+namespace hemibake {
+
+// Paths that are split together.
+inline constexpr uint32_t kRefereeGroupPaths = 64;
+
+// Σ_b ρᵇ E_b/π over b = 0 … last_bounce.
+struct RefereeTotal {
+  static constexpr int kUnlimited = -1;
+  double albedo = 0.5;           // ρ, 0..1; at 1 without limit it is exactly 1 and slow to find out
+  int last_bounce = kUnlimited;  // at least RefereeOptions::bounces, or kUnlimited
+};
+
+struct RefereeOptions {
+  int paths = 1024;  // per receiver: rounded up to whole groups of 64, at least two groups
+  int bounces = 2;   // E_0 … E_bounces are measured, 0..
+  std::vector<RefereeTotal> totals = std::vector<RefereeTotal>(1);  // one, at albedo 0.5
+  uint64_t seed = 0;
+  double lift_texels = 1e-6;  // above 0; less on maps with less relief than a texel
+};
+
+// Measurements of some receivers. Quantities: E_0/π … E_bounces/π, then totals/π in the order of the options.
+struct RefereeEstimates {
+  int quantities = 0;
+  uint32_t groups = 0;           // independent estimates behind each mean, at least 2
+  std::vector<double> mean;      // [receiver · quantities + quantity]
+  std::vector<double> variance;  // of that mean, unbiased
+  uint64_t rays = 0;
+  uint64_t lost_rays =
+      0;  // taken for sky, see WalkEnd::kLost: every estimate is off by at most lost paths / paths
+
+  uint64_t paths() const { return uint64_t{groups} * kRefereeGroupPaths; }  // per receiver
+  size_t receivers() const { return quantities == 0 ? 0 : mean.size() / static_cast<size_t>(quantities); }
+  size_t index(size_t receiver, int quantity) const {
+    return receiver * static_cast<size_t>(quantities) + static_cast<size_t>(quantity);
+  }
+};
+
+// A measured mean with its interval: mean ± half_width.
+struct RefereeInterval {
+  double mean = 0;
+  double half_width = 0;
+  bool contains(double value) const { return value >= mean - half_width && value <= mean + half_width; }
+};
+
+// Receivers are the given texels: the centre, about the shading normal. Throws InputError for options out of
+// range.
+RefereeEstimates referee_texels(const Surface& surface, std::span<const uint32_t> texels,
+                                const RefereeOptions& options);
+
+// One receiver: the surface itself, the mean over its area about the facets' normals.
+RefereeEstimates referee_area(const Surface& surface, const RefereeOptions& options);
+
+// Student's t with groups − 1 degrees of freedom. confidence in (0, 1).
+RefereeInterval referee_interval(const RefereeEstimates& estimates, size_t receiver, int quantity,
+                                 double confidence);
+
+}  // namespace hemibake

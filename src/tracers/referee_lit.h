@@ -1,0 +1,35 @@
+// The referee under any sky and with any colour: plain path tracing of one texel's irradiance, as unbiased as
+// referee.h and with the same walk, lift and random numbers.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "core/grid.h"
+#include "surface/surface.h"
+
+namespace hemibake {
+
+struct RefereeLighting {
+  // Radiance from where `direction` (unit, world frame) points, ≥ 0 per channel. Called from many threads.
+  // With open edges directions below the horizon come up as well.
+  std::function<glm::dvec3(const glm::dvec3& direction)> sky;
+  // 0..1 per channel: one value per texel, bilinear between texel centres (clamped at open edges), or a
+  // single one.
+  Grid<glm::vec3> albedo;
+};
+
+struct RefereeIrradiance {
+  glm::dvec3 mean{0};      // in the unit of the sky's radiance times sr: π on open ground under a sky of 1
+  glm::dvec3 variance{0};  // of that mean
+};
+
+// One result per texel. paths ≥ 2 per texel. Russian roulette lets a path live on with the largest channel of
+// the albedo it hits, so its weight never grows. Throws InputError for sizes and values out of range.
+std::vector<RefereeIrradiance> referee_lit_texels(const Surface& surface, std::span<const uint32_t> texels,
+                                                  const RefereeLighting& lighting, int paths, uint64_t seed);
+
+}  // namespace hemibake

@@ -1,0 +1,89 @@
+#include "transport/plan.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/statistics.h"
+
+namespace hemibake {
+namespace {
+
+constexpr uint32_t kPilotRows = 512;
+constexpr size_t kBytesPerLink = 8;  // patch index and weight
+// Seconds a link takes in a bounce: measured 1–2 ns where the light under way fits the cache.
+constexpr double kSecondsPerLink = 2e-9;
+
+struct Pilot {
+  Moments links;
+  uint64_t rays = 0;
+  double cpu_seconds = 0;
+};
+
+// Rows spread evenly over [0, count), traced on this thread.
+template <class TraceRow>
+Pilot trace_pilot(uint32_t count, const TraceRow& trace_row) {
+  Pilot pilot;
+  Row row;
+  TracerCounts counts;
+  const uint32_t rows = std::min(count, kPilotRows);
+  const double start = process_cpu_seconds();
+  for (uint32_t i = 0; i < rows; ++i) {
+    trace_row(static_cast<uint32_t>(uint64_t{count} * i / rows), row, counts);
+    pilot.links.add(static_cast<double>(row.links.size()));
+  }
+  pilot.cpu_seconds = process_cpu_seconds() - start;
+  pilot.rays = counts.rays;
+  return pilot;
+}
+
+void add_pilot(const Pilot& pilot, uint32_t count, BakePlan& plan) {
+  const double rows = static_cast<double>(pilot.links.count), scale = count / rows;
+  // Four standard errors, and a block per thread that grows by doubling.
+  const double error = 4 * pilot.links.stddev() / std::sqrt(rows);
+  plan.rays += static_cast<uint64_t>(std::llround(static_cast<double>(pilot.rays) * scale));
+  plan.links += static_cast<uint64_t>(std::llround(pilot.links.mean * count));
+  plan.link_bytes += static_cast<size_t>((pilot.links.mean + error) * count) * kBytesPerLink + size_t{count} * 4;
+  plan.trace_cpu_seconds += pilot.cpu_seconds * scale;
+}
+
+}  // namespace
+
+BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
+  const size_t texels = surface.texel_count();
+  BakePlan plan;
+  plan.surface_bytes = texels * 16 + options.scene_bytes;
+  // α, E₀/π and the bent normal; then every bounce, total and residual as planes, and four vectors of doubles under way
+  // for texels and patches.
+  plan.plane_bytes = texels * 20;
+  if (options.with_links) {
+    const size_t patches = options.patches == Patches::kFacets ? 2 * texels : texels;
+    plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 3) + 32) + patches * 36;
+  }
+  return plan;
+}
+
+BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptions& options) {
+  BakePlan plan = plan_planes(surface, options);
+  const auto of_texels = [&](uint32_t texel, Row& row, TracerCounts& counts) {
+    tracer.trace_texel(texel, options.with_links, row, counts);
+  };
+  add_pilot(trace_pilot(surface.texel_count(), of_texels), surface.texel_count(), plan);
+  if (options.with_links && options.patches == Patches::kFacets) {
+    const auto of_patches = [&](uint32_t patch, Row& row, TracerCounts& counts) {
+      tracer.trace_patch(patch, true, row, counts);
+    };
+    add_pilot(trace_pilot(tracer.patch_count(), of_patches), tracer.patch_count(), plan);
+  }
+  if (!options.with_links) plan.link_bytes = 0;
+  plan.bounce_cpu_seconds = static_cast<double>(plan.links) * options.bounces * kSecondsPerLink;
+  return plan;
+}
+
+size_t machine_memory_bytes() {
+  return static_cast<size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<size_t>(sysconf(_SC_PAGE_SIZE));
+}
+
+}  // namespace hemibake

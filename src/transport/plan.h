@@ -1,0 +1,39 @@
+// What a bake will take, before it starts.
+#pragma once
+
+#include <cstdint>
+
+#include "surface/surface.h"
+#include "tracers/tracer.h"
+
+namespace hemibake {
+
+struct BakePlan {
+  uint64_t rays = 0;             // of all receivers
+  uint64_t links = 0;            // stored, expected
+  size_t surface_bytes = 0;      // heights, normals and the tracer's scene
+  size_t link_bytes = 0;         // expected and four standard errors more
+  size_t plane_bytes = 0;        // results, and light under way
+  double trace_cpu_seconds = 0;  // from the pilot
+  double bounce_cpu_seconds = 0;
+
+  size_t memory_bytes() const { return surface_bytes + link_bytes + plane_bytes; }
+};
+
+struct PlanOptions {
+  Patches patches = Patches::kFacets;
+  bool with_links = true;
+  int bounces = 20;
+  size_t scene_bytes = 0;  // of the tracer
+};
+
+// Without tracing: all but links and seconds.
+BakePlan plan_planes(const Surface& surface, const PlanOptions& options);
+
+// Adds links and seconds from a pilot of some hundred texels and patches spread over the map.
+BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptions& options);
+
+// Memory of this machine, bytes.
+size_t machine_memory_bytes();
+
+}  // namespace hemibake

@@ -1,0 +1,132 @@
+// `hemibake curves` and `hemibake fit` through the real binary.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/constants.h"
+#include "curves/closed_forms.h"
+#include "io/bake_file.h"
+#include "io/curves_file.h"
+#include "io/io_testing.h"
+#include "support/run_command.h"
+
+namespace hemibake {
+namespace {
+
+constexpr double kK = 0.79, kE = 1.03, kA = 38.4, kB = 3.85;
+
+class CurvesAndFit : public testing::Test {
+ protected:
+  // A bake of 400 × 3 texels that follows the published formulas with the constants above.
+  void write_model_bake(const std::string& name) const {
+    Bake bake;
+    bake.width = 400;
+    bake.height = 3;
+    bake.visible_fraction = Grid<float>(400, 3);
+    bake.irradiance.assign(3, Grid<float>(400, 3));
+    for (size_t i = 0; i < bake.visible_fraction.size(); ++i) {
+      const double ao = (static_cast<double>(i) + 0.5) / 1200;
+      const double first = first_bounce_factor(ao, kA, kB);
+      bake.visible_fraction[i] = static_cast<float>(ao);
+      bake.irradiance[0][i] = static_cast<float>(kPi * direct_factor(ao, kK, kE));
+      bake.irradiance[1][i] = static_cast<float>(kPi * first);
+      bake.irradiance[2][i] = static_cast<float>(kPi * first * (1 - ao));
+    }
+    write_bake(folder_ / name, bake, make_provenance("test"));
+  }
+
+  CommandOutcome run(const std::string& arguments) const {
+    return run_command(fmt::format("cd '{}' && '{}' {}", folder_.path().string(), HEMIBAKE_BINARY, arguments),
+                       folder_.path());
+  }
+
+  // Expects exit code `code` and one line on standard error.
+  void expect_failure(const std::string& arguments, int code, const std::string& line) const {
+    const CommandOutcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, code) << arguments;
+    EXPECT_EQ(outcome.err, "hemibake: " + line + "\n");
+    EXPECT_EQ(outcome.out, "");
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(CurvesAndFit, RecoverTheConstantsOfABake) {
+  write_model_bake("b.exr");
+  const CommandOutcome curves = run("curves b.exr -o c.csv --bins 100 --json");
+  ASSERT_EQ(curves.exit_code, 0) << curves.err;
+  EXPECT_EQ(nlohmann::json::parse(curves.out).at("populated"), 100);
+  EXPECT_EQ(read_curves(folder_ / "c.csv").bins.size(), 100U);
+
+  const CommandOutcome fit = run("fit c.csv -o f.json --json");
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  const nlohmann::json json = nlohmann::json::parse(fit.out);
+  EXPECT_EQ(json, nlohmann::json::parse(read_bytes(folder_ / "f.json")));
+  // Means over bins of width w differ from values at their centres by f″w²/24: w = 0.02 shifts A by 0.35,
+  // 0.01 by a quarter.
+  EXPECT_NEAR(json.at("F0").at("parameters").at("k").at("value"), kK, 2e-3);
+  EXPECT_NEAR(json.at("F0").at("parameters").at("e").at("value"), kE, 2e-3);
+  EXPECT_NEAR(json.at("F1").at("parameters").at("A").at("value"), kA, 0.1);
+  EXPECT_NEAR(json.at("F1").at("parameters").at("B").at("value"), kB, 0.004);
+  EXPECT_EQ(json.at("provenance").at("input"), "c.csv");
+  EXPECT_EQ(json.at("provenance").at("command"), "hemibake fit c.csv");
+}
+
+TEST_F(CurvesAndFit, SameBytesAtAnyThreadCount) {
+  write_model_bake("b.exr");
+  for (const std::string threads : {"1", "2"}) {
+    ASSERT_EQ(run("curves b.exr -o c" + threads + ".csv --threads " + threads).exit_code, 0);
+    ASSERT_EQ(run("fit c1.csv -o f" + threads + ".json --threads " + threads).exit_code, 0);
+  }
+  EXPECT_EQ(read_bytes(folder_ / "c1.csv"), read_bytes(folder_ / "c2.csv"));
+  EXPECT_EQ(read_bytes(folder_ / "f1.json"), read_bytes(folder_ / "f2.json"));
+}
+
+TEST_F(CurvesAndFit, EmptyBinsAreSkipped) {
+  write_bytes(folder_ / "c.csv",
+              "bin,ao_low,ao_high,ao_mean,count,E00_mean,E00_stddev,E01_mean,E01_stddev\n"
+              "0,0,0.2,,0,,,,\n1,0.2,0.4,0.3,5,1.3,0.1,0.9,0.1\n2,0.4,0.6,0.5,5,2.0,0.1,0.6,0.1\n"
+              "3,0.6,0.8,0.7,5,2.5,0.1,0.3,0.1\n4,0.8,1,0.9,5,3,0.1,0.1,0.1\n");
+  const CommandOutcome fit = run("fit c.csv -o f.json --json");
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_EQ(nlohmann::json::parse(fit.out).at("F0").at("points"), 4);
+}
+
+TEST_F(CurvesAndFit, UnusableCurvesAreRefused) {
+  const std::string head = "bin,ao_low,ao_high,ao_mean,count,E00_mean,E00_stddev,E01_mean,E01_stddev\n";
+  const auto expect_refusal = [&](const std::string& rows, const std::string& line) {
+    write_bytes(folder_ / "c.csv", head + rows);
+    expect_failure("fit c.csv -o f.json", 2, line);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "f.json"));
+  };
+  const std::string few = "usable bins, expected at least 3 for the 2 parameters of published F0";
+  expect_refusal("", "c.csv: no bins, expected a line for each");
+  expect_refusal("0,0,1,,0,,,,\n", "c.csv: 0 " + few);
+  expect_refusal("0,0,1,1,100,3.1416,0,0,0\n", "c.csv: 1 " + few);
+  expect_refusal("0,0,1,0.5,-1,1,0,1,0\n", "c.csv:2: count is -1, expected a number from 0");
+  expect_refusal("0,0,1,0.5,1.5,1,0,1,0\n", "c.csv:2: count is 1.5, expected a whole number");
+  expect_refusal("0,0,1,0.5,1,nan,0,1,0\n",
+                 "c.csv:2: column 'E00_mean': \"nan\" is not usable, expected a finite number or nothing");
+  expect_refusal("0,0,1,0.5,1,,0,1,0\n", "c.csv:2: E00_mean is empty, expected a number");
+}
+
+TEST_F(CurvesAndFit, AFitThatDeterminesNothingExitsOne) {
+  std::string rows = "bin,E0,E1\n";
+  for (int j = 0; j < 10; ++j) rows += fmt::format("{},{},0\n", j, 0.3 * j + 0.1);
+  write_bytes(folder_ / "c.csv", rows);
+  expect_failure("fit c.csv -o f.json --model published", 1,
+                 "c.csv: fit of published F1: the points do not determine B");
+}
+
+TEST_F(CurvesAndFit, PathsFailBeforeTheWork) {
+  write_bytes(folder_ / "c.csv", "bin,E0,E1\n");
+  expect_failure("fit c.csv -o f.txt", 2, "f.txt: cannot write '.txt' files, expected .json");
+  expect_failure("fit c.csv -o none/f.json", 2, "none/f.json: could not write: No such file or directory");
+  expect_failure("fit none.csv -o f.json", 2, "none.csv: could not read: No such file or directory");
+  expect_failure("curves none.exr -o c.txt", 2, "c.txt: cannot write '.txt' files, expected .csv");
+  expect_failure("curves c.csv -o d.csv --bins 0", 2, "--bins: Value 0 not in range 1 to 65536");
+}
+
+}  // namespace
+}  // namespace hemibake

@@ -1,0 +1,83 @@
+#include "curves/curves.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/error.h"
+
+namespace hemibake {
+namespace {
+
+Bake make_bake(const std::vector<float>& ao, const std::vector<std::vector<float>>& irradiance) {
+  Bake bake;
+  bake.width = static_cast<int>(ao.size());
+  bake.height = 1;
+  bake.visible_fraction = Grid<float>(bake.width, 1);
+  bake.visible_fraction.values = ao;
+  for (const std::vector<float>& values : irradiance) {
+    bake.irradiance.emplace_back(bake.width, 1);
+    bake.irradiance.back().values = values;
+  }
+  return bake;
+}
+
+TEST(Curves, BinEdgesBelongToTheBinAboveAndOneToTheLast) {
+  const Bake bake = make_bake({0, 0.2499999F, 0.25F, 0.75F, 0.9999F, 1}, {{0, 1, 2, 3, 3, 3}});
+  const Curves curves = make_curves(bake, 4);
+  ASSERT_EQ(curves.bins.size(), 4U);
+  const std::vector<double> counts{2, 1, 0, 3};
+  for (size_t j = 0; j < 4; ++j) {
+    EXPECT_EQ(curves.bins[j].count, counts[j]) << "bin " << j;
+    EXPECT_DOUBLE_EQ(curves.bins[j].ao_low, 0.25 * static_cast<double>(j));
+    EXPECT_DOUBLE_EQ(bin_center(curves.bins[j]), 0.25 * static_cast<double>(j) + 0.125);
+  }
+}
+
+TEST(Curves, MeanAndSpreadOfEveryBounce) {
+  const Bake bake = make_bake({0.1F, 0.2F, 0.9F}, {{1, 2, 3}, {0.5F, 0.5F, 0.25F}});
+  const Curves curves = make_curves(bake, 2);
+  EXPECT_EQ(curves.bounce_count, 2);
+  EXPECT_NEAR(curves.bins[0].ao_mean, 0.15, 1e-8);
+  EXPECT_DOUBLE_EQ(curves.bins[0].bounces[0].mean, 1.5);
+  EXPECT_DOUBLE_EQ(curves.bins[0].bounces[0].stddev, 0.5);
+  EXPECT_DOUBLE_EQ(curves.bins[0].bounces[1].mean, 0.5);
+  EXPECT_DOUBLE_EQ(curves.bins[0].bounces[1].stddev, 0);
+  EXPECT_DOUBLE_EQ(curves.bins[1].bounces[1].mean, 0.25);
+}
+
+TEST(Curves, TexelsOfAllBinsAddUp) {
+  std::vector<float> ao, irradiance;
+  for (int i = 0; i < 1000; ++i) {
+    ao.push_back(static_cast<float>(i) / 999.0F);
+    irradiance.push_back(static_cast<float>(i % 7));
+  }
+  const Curves curves = make_curves(make_bake(ao, {irradiance}), 13);
+  double count = 0, sum = 0;
+  for (const CurveBin& bin : curves.bins) {
+    count += bin.count;
+    sum += bin.count * bin.bounces[0].mean;
+  }
+  EXPECT_EQ(count, 1000);
+  EXPECT_NEAR(sum, 142 * 21 + 15, 1e-9);  // 142 whole rounds of 0..6 and 0..5 once
+}
+
+TEST(Curves, UnusableTexelsAreNamed) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(make_curves(make_bake({0.5F, nan}, {{1, 1}}), 10), InputError);
+  EXPECT_THROW(make_curves(make_bake({0.5F, 1.1F}, {{1, 1}}), 10), InputError);
+  EXPECT_THROW(make_curves(make_bake({0.5F, 0.5F}, {{1, -1}}), 10), InputError);
+  EXPECT_THROW(make_curves(make_bake({0.5F}, {}), 10), InputError);
+  EXPECT_THROW(make_curves(Bake{}, 10), InputError);
+  try {
+    make_curves(make_bake({0.5F, 0.25F}, {{1, nan}}), 10);
+    FAIL() << "a NaN passed";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "irradiance.00 at texel (1, 0) is nan, expected a finite number from 0");
+  }
+}
+
+}  // namespace
+}  // namespace hemibake

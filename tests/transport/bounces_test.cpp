@@ -1,0 +1,130 @@
+#include "transport/bounces.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/constants.h"
+#include "core/parallel.h"
+#include "core/statistics.h"
+#include "support/maps.h"
+#include "surface/facets.h"
+#include "tracers/embree.h"
+
+namespace hemibake {
+namespace {
+
+// Two texels that see each other: E₀/π = c, the rest goes to the other.
+Visibility two_texels(float c) {
+  Visibility seen;
+  seen.visible_fraction = Grid<float>(2, 1, c);
+  seen.direct_over_pi = Grid<float>(2, 1, c);
+  seen.gather = make_links(2, 2);
+  for (uint32_t i = 0; i < 2; ++i) append_row(seen.gather.blocks[0], std::vector<Link>{{1 - i, 1 - c}});
+  return seen;
+}
+
+TEST(Bounces, TwoTexelsAreAGeometricSeries) {
+  const Bounces bounces = bounce_light(two_texels(0.25f), {});
+  ASSERT_EQ(bounces.irradiance.size(), 21u);
+  for (int b = 0; b <= 20; ++b)
+    EXPECT_NEAR(bounces.irradiance[static_cast<size_t>(b)][0], kPi * 0.25 * std::pow(0.75, b), 1e-6);
+  EXPECT_NEAR(bounces.worst_residual, std::pow(0.75, 21), 1e-9);
+  EXPECT_NEAR(bounces.total[1], kPi * (1 - std::pow(0.75, 21)), 1e-6);
+}
+
+TEST(Bounces, ConvergenceGoesOnUntilTheToleranceAndNoFurther) {
+  BounceOptions options;
+  options.bounces = 3;
+  options.converge_tolerance = 1e-6;
+  const Bounces bounces = bounce_light(two_texels(0.25f), options);
+  EXPECT_EQ(bounces.irradiance.size(), 4u);
+  EXPECT_LT(bounces.worst_residual, 1e-6);
+  EXPECT_LE(bounces.bounces_made, 3 + 60);  // 0.75^48 = 10⁻⁶, tested every ten bounces
+  EXPECT_NEAR(bounces.worst_residual, std::pow(0.75, bounces.bounces_made + 1), 1e-12);
+  EXPECT_TRUE(bounces.texels_short.empty());
+}
+
+TEST(Bounces, TheCapEndsItAndNamesWhatIsShort) {
+  Visibility seen = two_texels(0.25f);
+  seen.direct_over_pi[1] = 0;
+  seen.gather = make_links(2, 2);
+  append_row(seen.gather.blocks[0], std::vector<Link>{{1, 0.75f}});
+  append_row(seen.gather.blocks[0], std::vector<Link>{{1, 1.0f}});  // sees only itself
+  BounceOptions options;
+  options.converge_tolerance = 1e-6;
+  options.max_bounces = 50;
+  const Bounces bounces = bounce_light(seen, options);
+  EXPECT_EQ(bounces.bounces_made, 50);
+  EXPECT_EQ(bounces.texels_short, (std::vector<uint32_t>{0, 1}));
+  EXPECT_EQ(bounces.texels_closed, (std::vector<uint32_t>{1}));
+  EXPECT_NEAR(bounces.residual[1], 1, 1e-6);
+}
+
+TEST(Bounces, NoBouncesLeavesTheDirectLight) {
+  BounceOptions options;
+  options.bounces = 0;
+  const Bounces bounces = bounce_light(two_texels(0.25f), options);
+  ASSERT_EQ(bounces.irradiance.size(), 1u);
+  EXPECT_NEAR(bounces.total[0], kPi * 0.25, 1e-6);
+  EXPECT_NEAR(bounces.residual[0], 0.75, 1e-6);
+}
+
+Visibility see(const Surface& surface, Patches patches, int rays) {
+  RayOptions options;
+  options.rays = rays;
+  options.patches = patches;
+  return trace_surface(*make_embree_tracer(surface, options), surface.width(), surface.height(), patches, true);
+}
+
+// At albedo 1 all light comes back out: π in every texel, whatever the map.
+TEST(Bounces, EnergyIsPiInEveryTexel) {
+  BounceOptions options;
+  options.converge_tolerance = 1e-5;
+  const Surface maps[] = {synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.2), white_noise_surface(48, 48, 0.05),
+                          synthetic_surface(SyntheticKind::kGroove, 32, 16), synthetic_surface(SyntheticKind::kFlat, 8, 8)};
+  for (const Surface& surface : maps) {
+    const Bounces bounces = bounce_light(see(surface, Patches::kFacets, 256), options);
+    EXPECT_TRUE(bounces.texels_short.empty());
+    for (const float total : bounces.total.values) ASSERT_NEAR(static_cast<double>(total) / kPi, 1, 2e-5);
+  }
+  for (const SyntheticKind kind : {SyntheticKind::kGroove, SyntheticKind::kFlat}) {
+    const Bounces bounces = bounce_light(see(synthetic_surface(kind, 32, 16), Patches::kTexels, 256), options);
+    for (const float total : bounces.total.values) ASSERT_NEAR(static_cast<double>(total) / kPi, 1, 2e-5);
+  }
+}
+
+// Σ area · E_{b+1} = Σ area · E_b (1 − E₀/π) over the facets of a tiled map: what hits the surface again is what
+// did not escape (reciprocity of the links, which rays know only on average).
+TEST(Bounces, LightThatStaysIsLightThatComesBack) {
+  const Surface surface = synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.2);
+  const Visibility seen = see(surface, Patches::kFacets, 256);
+  std::vector<double> light(seen.patch_direct_over_pi.begin(), seen.patch_direct_over_pi.end()), next(light.size());
+  for (int bounce = 0; bounce < 4; ++bounce) {
+    gather(seen.patches, light, next);
+    double stays = 0, comes_back = 0;
+    for (uint32_t i = 0; i < light.size(); ++i) {
+      const double area = facet_area_ratio(surface, i);
+      stays += area * light[i] * (1 - static_cast<double>(seen.patch_direct_over_pi[i]));
+      comes_back += area * next[i];
+    }
+    EXPECT_NEAR(comes_back / stays, 1, 5e-3);
+    light = next;
+  }
+}
+
+TEST(Bounces, SameBytesAtAnyThreadCount) {
+  const Surface surface = white_noise_surface(80, 64, 0.1);
+  const auto run = [&](int threads) {
+    set_thread_count(threads);
+    const Visibility seen = see(surface, Patches::kFacets, 64);
+    return bounce_light(seen, {});
+  };
+  const Bounces one = run(1), two = run(2);
+  set_thread_count(0);
+  for (size_t b = 0; b < one.irradiance.size(); ++b) ASSERT_EQ(one.irradiance[b].values, two.irradiance[b].values);
+  EXPECT_EQ(one.total.values, two.total.values);
+}
+
+}  // namespace
+}  // namespace hemibake
