@@ -58,7 +58,7 @@ Provenance provenance_of(const BakeOptions& options, const Surface& surface) {
     p["normalize"] = options.normalize;
     p["normal_length"] = options.normal_length;
   }
-  if (options.tracer != "march") p["directions"] = options.directions;
+  if (options.tracer == "embree") p["directions"] = options.directions;
   if (options.tracer != "march" && options.patches == "texels") p["texel_links"] = options.texel_links;
   p["outputs"] = fmt::format("{}", fmt::join(options.outputs, ","));
   p["bounces"] = options.bounces;

@@ -16,6 +16,7 @@ namespace {
 constexpr int kMaxRays = 1 << 20;
 constexpr int kMaxStoredBounces = 1000;
 constexpr int kMaxBounces = 1000000;
+constexpr int kMaxAzimuths = 65536;
 constexpr int kMaxSteps = 10000000;
 constexpr double kLargestLengthM = 1e9;
 
@@ -63,11 +64,11 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->group("Surface");
 
   app.add_option("--tracer", options.tracer,
-                 "how visibility is found: rays with Embree, or the texel march of 2018")
-      ->check(CLI::IsMember({"embree", "march"}))
+                 "how visibility is found: rays with Embree, vertical slices, or the texel march of 2018")
+      ->check(CLI::IsMember({"embree", "march", "slice"}))
       ->capture_default_str()
       ->group("Tracing");
-  app.add_option("--rays", options.rays, "rays per texel and per patch")
+  app.add_option("--rays", options.rays, "rays per texel and per patch; azimuths with --tracer slice")
       ->check(whole_number_in(1, kMaxRays))
       ->capture_default_str()
       ->group("Tracing");
@@ -213,6 +214,11 @@ void settle_bake_options(const CLI::App& app, BakeOptions& options) {
 
   if (options.tracer == "march" && options.patches == "facets")
     throw InputError("--patches: a march knows no facets, expected texels with --tracer march");
+  if (options.tracer == "slice" && options.rays > kMaxAzimuths)
+    throw InputError(fmt::format("--rays: {} azimuths, expected at most {} with --tracer slice", options.rays,
+                                 kMaxAzimuths));
+  if (options.tracer == "slice" && options.cone_degrees < 180)
+    throw InputError("--cone: slices serve the whole hemisphere, expected 180 with --tracer slice");
   if (!options.normal_map.empty() && options.normal_y.empty())
     throw InputError(
         options.normal_map.string() +
@@ -247,6 +253,16 @@ RayOptions ray_options(const BakeOptions& options) {
   rays.texel_links = options.texel_links == "nearest" ? TexelLinks::kNearest : TexelLinks::kBilinear;
   rays.seed = options.seed;
   return rays;
+}
+
+SliceOptions slice_options(const BakeOptions& options) {
+  SliceOptions slice;
+  slice.azimuths = options.rays;
+  if (options.max_distance_m) slice.max_distance_m = *options.max_distance_m;
+  slice.patches = patches_of(options);
+  slice.texel_links = ray_options(options).texel_links;
+  slice.seed = options.seed;
+  return slice;
 }
 
 FilterOptions filter_options(const BakeOptions& options) {

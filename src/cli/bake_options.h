@@ -13,6 +13,7 @@
 #include "surface/surface.h"
 #include "tracers/march.h"
 #include "tracers/ray_options.h"
+#include "tracers/slice.h"
 
 namespace CLI {
 class App;
@@ -73,6 +74,7 @@ void check_bake_output(const BakeOptions& options, const std::filesystem::path& 
                        std::initializer_list<std::string_view> suffixes = {});
 
 RayOptions ray_options(const BakeOptions& options);
+SliceOptions slice_options(const BakeOptions& options);
 FilterOptions filter_options(const BakeOptions& options);
 // Without what only the map knows (MarchOptions::lowest_m, normal_lengths).
 MarchOptions march_options(const BakeOptions& options);

@@ -11,6 +11,7 @@
 #include "surface/normals.h"
 #include "tracers/embree.h"
 #include "tracers/march.h"
+#include "tracers/slice.h"
 
 namespace hemibake {
 namespace {
@@ -61,6 +62,7 @@ BakeMap load_bake_map(const BakeOptions& options) {
 
 std::unique_ptr<Tracer> make_tracer(const BakeOptions& options, const BakeMap& map) {
   if (options.tracer == "embree") return make_embree_tracer(map.surface, ray_options(options));
+  if (options.tracer == "slice") return make_slice_tracer(map.surface, slice_options(options));
   MarchOptions march = march_options(options);
   march.lowest_m = map.lowest_m;
   march.normal_lengths = map.normal_lengths;

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -18,7 +19,7 @@ namespace {
 
 struct FitOptions {
   CommonOptions common;
-  std::string curves;
+  std::vector<std::string> curves;
   std::string output;
   std::vector<std::string> models = {"published", "bounded"};
   std::string abscissa = to_string(Abscissa::center);
@@ -36,24 +37,42 @@ std::string describe(const NamedFit& named) {
   return text + fmt::format(" rms {:.5f}, max {:.5f}, {} points\n", fit.rms, fit.max_error, fit.points);
 }
 
+// `input` and `input_sha256` name every input, in order.
+Provenance provenance_of(const std::vector<std::string>& paths) {
+  Provenance provenance = make_provenance(command_line(process_arguments()), paths[0]);
+  for (size_t i = 1; i < paths.size(); ++i) {
+    const Provenance next = make_provenance("", paths[i]);
+    for (const char* name : {"input", "input_sha256"}) {
+      provenance[name] = provenance[name].get<std::string>() + ", " + next[name].get<std::string>();
+    }
+  }
+  return provenance;
+}
+
 int run_fit(const FitOptions& options) {
   apply_common_options(options.common);
   check_output_path(options.output, {".json"});
   const Abscissa abscissa = abscissa_from_string(options.abscissa);
   const Weights weights = weights_from_string(options.weights);
-  const Curves curves = read_curves(options.curves);
+  if (abscissa == Abscissa::published && options.curves.size() > 1) {
+    throw InputError("--abscissa published: several sets of curves, expected one");
+  }
+  std::vector<Curves> sets;
+  for (const std::string& path : options.curves) sets.push_back(read_curves(path));
+  const Curves curves = pool_curves(sets);
+  const std::string names = fmt::format("{}", fmt::join(options.curves, ", "));
   FitFile file;
-  name_file(options.curves, [&] {
+  name_file(names, [&] {
     for (const std::string& model : options.models) {
       for (NamedFit& named : fit_model(model, curves, abscissa, weights))
         file.fits.push_back(std::move(named));
     }
   });
-  file.provenance = make_provenance(command_line(process_arguments()), options.curves);
+  file.provenance = provenance_of(options.curves);
   write_fits(options.output, file);
 
   for (const std::string& warning : fit_warnings(file.fits)) {
-    fmt::print(stderr, "hemibake: {}: warning: {}\n", options.curves, warning);
+    fmt::print(stderr, "hemibake: {}: warning: {}\n", names, warning);
   }
   std::string text;
   for (const NamedFit& named : file.fits) text += describe(named);
@@ -72,7 +91,8 @@ CommandBody setup_fit(CLI::App& app) {
     summaries += fmt::format("; {}: {}", model.name, model.summary);
   }
   app.add_option("CURVES", options->curves,
-                 "the curves, CSV as 'hemibake curves' writes it, or bin,E0,E1,… of 2018")
+                 "the curves, CSV as 'hemibake curves' writes it, or bin,E0,E1,… of 2018; several: one fit "
+                 "to the bins of all")
       ->required();
   app.add_option("-o,--output", options->output, "the fits to write, JSON")->required();
   app.add_option("--model", options->models, "models to fit, separated by commas" + summaries)

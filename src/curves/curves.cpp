@@ -79,4 +79,16 @@ Curves make_curves(const Bake& bake, int bins) {
   return curves;
 }
 
+Curves pool_curves(std::span<const Curves> sets) {
+  Curves pooled;
+  pooled.bounce_count = sets[0].bounce_count;
+  for (const Curves& set : sets) {
+    pooled.bounce_count = std::min(pooled.bounce_count, set.bounce_count);
+    pooled.has_counts = pooled.has_counts && set.has_counts;
+    pooled.bins.insert(pooled.bins.end(), set.bins.begin(), set.bins.end());
+  }
+  for (CurveBin& bin : pooled.bins) bin.bounces.resize(static_cast<size_t>(pooled.bounce_count));
+  return pooled;
+}
+
 }  // namespace hemibake

@@ -3,6 +3,7 @@
 // that.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "transport/bake.h"
@@ -37,5 +38,9 @@ double bin_center(const CurveBin& bin);
 // bins: 1 and up.
 // Throws InputError ("what was wrong, what was expected", no file) on a missing plane or an unusable texel.
 Curves make_curves(const Bake& bake, int bins);
+
+// The bins of several sets side by side, to fit one set of constants to all: bins overlap, and every set
+// counts by the number of its bins. sets: at least one; the curves that all of them have are kept.
+Curves pool_curves(std::span<const Curves> sets);
 
 }  // namespace hemibake

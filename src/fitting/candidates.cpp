@@ -163,13 +163,9 @@ double populated_bins(const Curves& curves) {
                                            [](const CurveBin& bin) { return bin.count > 0; }));
 }
 
-// The bins of all sets but one, side by side.
-Curves all_but(const std::vector<Curves>& sets, size_t left_out) {
-  Curves pooled;
-  for (size_t i = 0; i < sets.size(); ++i) {
-    if (i != left_out) pooled.bins.insert(pooled.bins.end(), sets[i].bins.begin(), sets[i].bins.end());
-  }
-  return pooled;
+Curves all_but(std::vector<Curves> sets, size_t left_out) {
+  sets.erase(sets.begin() + static_cast<ptrdiff_t>(left_out));
+  return pool_curves(sets);
 }
 
 }  // namespace

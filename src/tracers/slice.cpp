@@ -1,9 +1,10 @@
 #include "tracers/slice.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/trigonometric.hpp>
 
 #include "core/constants.h"
 #include "sampling/low_discrepancy.h"
@@ -26,6 +27,8 @@ constexpr uint64_t kTexelTurn = 0x511ce01, kFacetTurn = 0x511ce02, kFacetShift =
 constexpr int kPaths = 512;
 // Segments kept ready in a family, about 500 bytes each.
 constexpr int kReadySegments = 16384;
+
+constexpr uint32_t kNoFacet = 0xffffffff;
 
 class SliceTracer final : public Tracer {
  public:
@@ -55,7 +58,7 @@ class SliceTracer final : public Tracer {
                                std::span<const SlicePacket> packets) const;
   void clip_to_max_distance(const SlicePaths& paths, const SlicePacket& packet, PacketView& view) const;
   void fill_row(const SlicePaths& paths, const SlicePacket& packet, const PacketView& view, size_t lane,
-                bool with_links, Row& row, TracerCounts& counts) const;
+                uint32_t own_facet, bool with_links, Row& row, TracerCounts& counts) const;
 
   const Surface& surface_;
   SliceOptions options_;
@@ -110,7 +113,7 @@ SlicePacket SliceTracer::texel_packet(int x, int y) const {
   for (int lane = 0; lane < packet.lanes; ++lane) {
     const size_t l = static_cast<size_t>(lane);
     const glm::vec3& n = surface_.normals(x + lane, y);
-    packet.base[l] = *field_.heights.at(x + lane, y);
+    packet.base[l] = *field_.heights.at(x + lane, y) + static_cast<float>(options_.lift_texels);
     packet.rim_x[l] = -n.x / n.z;
     packet.rim_y[l] = -n.y / n.z;
   }
@@ -130,7 +133,7 @@ SlicePacket SliceTracer::facet_packet(int column, int row, int half) const {
     const int x = column + lane;
     const auto height = [&](int dx, int dy) { return *field_.heights.at(x + dx, row + dy); };
     // The legs of the right angle run along x and y, towards the cell's other side.
-    packet.base[l] = height(half, half);
+    packet.base[l] = height(half, half) + static_cast<float>(options_.lift_texels);
     packet.rim_x[l] = packet.plane_x[l] = height(1, half) - height(0, half);
     packet.rim_y[l] = packet.plane_y[l] = height(half, 1) - height(half, 0);
   }
@@ -174,7 +177,8 @@ void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacke
 }
 
 void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, const PacketView& view,
-                           size_t lane, bool with_links, Row& row, TracerCounts& counts) const {
+                           size_t lane, uint32_t own_facet, bool with_links, Row& row,
+                           TracerCounts& counts) const {
   const auto mean_direction = [&](const SliceSums& sums) {
     return glm::dvec3(sums.x[lane], sums.y[lane], sums.z[lane]);
   };
@@ -193,6 +197,8 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
   counts.cut_short += view.cut_short[lane];
   if (!with_links) return;
   for (const Stretch& stretch : view.stretches[lane]) {
+    // Where a path leaves its own facet at a corner, rounding may leave a little of it.
+    if (stretch.facet == own_facet) continue;
     const SlicePath& path = paths.paths[paths.path_index(packet.turn, static_cast<int>(stretch.azimuth))];
     const glm::dvec2 start = glm::dvec2(packet.x + static_cast<int>(lane), packet.y) + path.origin;
     const double rim = rim_x * path.direction.x + rim_y * path.direction.y;
@@ -217,7 +223,8 @@ void SliceTracer::trace_texels(uint32_t first, bool with_links, std::span<Row> r
   for (uint32_t texel = first; texel < end; ++texel) {
     const size_t lane = texel % width % kSliceLanes;
     if (lane == 0 && texel > first) ++index;
-    fill_row(texel_paths_, packets[index], views[index], lane, with_links, rows[texel - first], counts);
+    fill_row(texel_paths_, packets[index], views[index], lane, kNoFacet, with_links, rows[texel - first],
+             counts);
   }
 }
 
@@ -240,7 +247,8 @@ void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> 
     for (uint32_t cell = first_cell; cell < end_cell; ++cell) {
       const size_t lane = cell % columns % kSliceLanes;
       if (lane == 0 && cell > first_cell) ++index;
-      fill_row(paths, packets[index], views[index], lane, with_links, rows[2 * cell + half - first], counts);
+      const uint32_t facet = 2 * cell + half;
+      fill_row(paths, packets[index], views[index], lane, facet, with_links, rows[facet - first], counts);
     }
   }
 }

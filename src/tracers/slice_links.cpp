@@ -10,7 +10,7 @@ namespace hemibake {
 namespace {
 
 // Texels: a stretch longer than this is split where patches are texels.
-constexpr double kLongestPiece = 0.5;
+constexpr double kLongestPiece = 0.25;
 
 // A stretch in its slice: the line z = gradient · r − depth from the start, where r is the horizontal
 // distance.

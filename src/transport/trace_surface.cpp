@@ -13,32 +13,27 @@
 namespace hemibake {
 namespace {
 
-// Rows given to a tracer at once: neighbours that it may answer together.
-constexpr uint32_t kRowsAtOnce = 1024;
-
-// Traces rows [0, row_count) block by block; store(index, row) keeps what the caller wants of each.
+// Traces rows [0, row_count) block by block: neighbours that the tracer may answer together; store(index,
+// row) keeps what the caller wants of each.
 template <class TraceRows, class Store>
 TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, const TraceRows& trace_rows,
                           const Store& store) {
   const size_t block_count = (row_count + Links::kRowsPerBlock - 1) / Links::kRowsPerBlock;
   std::vector<TracerCounts> counts(block_count);
   parallel_for(block_count, 1, [&](size_t first_block, size_t last_block) {
-    std::vector<Row> rows(kRowsAtOnce);
+    std::vector<Row> rows(Links::kRowsPerBlock);
     for (size_t b = first_block; b < last_block; ++b) {
       const uint32_t begin = static_cast<uint32_t>(b) * Links::kRowsPerBlock;
-      const uint32_t end = std::min(row_count, begin + Links::kRowsPerBlock);
-      for (uint32_t first = begin; first < end; first += kRowsAtOnce) {
-        const std::span<Row> some(rows.data(), std::min(kRowsAtOnce, end - first));
-        trace_rows(first, some, counts[b]);
-        for (uint32_t i = 0; i < some.size(); ++i) {
-          const Row& row = some[i];
-          // Up to 2: the march with published weights in a narrow cone.
-          if (!(row.direct_over_pi >= 0 && row.direct_over_pi <= 2))
-            throw std::logic_error(
-                fmt::format("row {}: E0/pi is {}, expected 0..2", first + i, row.direct_over_pi));
-          store(first + i, row);
-          if (links != nullptr) append_row(links->blocks[b], row.links);
-        }
+      const std::span<Row> block_rows(rows.data(), std::min(Links::kRowsPerBlock, row_count - begin));
+      trace_rows(begin, block_rows, counts[b]);
+      for (uint32_t i = 0; i < block_rows.size(); ++i) {
+        const Row& row = block_rows[i];
+        // Up to 2: the march with published weights in a narrow cone.
+        if (!(row.direct_over_pi >= 0 && row.direct_over_pi <= 2))
+          throw std::logic_error(
+              fmt::format("row {}: E0/pi is {}, expected 0..2", begin + i, row.direct_over_pi));
+        store(begin + i, row);
+        if (links != nullptr) append_row(links->blocks[b], row.links);
       }
       if (links != nullptr) {
         links->blocks[b].patches.shrink_to_fit();

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "bench/bare_scene.h"
 #include "bench/bench_maps.h"
 #include "core/parallel.h"
 #include "tracers/embree.h"
@@ -17,72 +18,15 @@
 namespace hemibake {
 namespace {
 
-constexpr int kMargin = 64;  // as in tracers/embree.cpp
-
-struct BareScene {
-  RTCDevice device = rtcNewDevice("threads=1");
-  RTCScene scene = rtcNewScene(device);
-  explicit BareScene(const Surface& surface) {
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    const uint32_t columns = static_cast<uint32_t>(surface.width() + 2 * kMargin);
-    const uint32_t rows = static_cast<uint32_t>(surface.height() + 2 * kMargin);
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, size_t{columns + 1} * (rows + 1)));
-    auto* t = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, size_t{2} * columns * rows));
-    for (uint32_t j = 0; j <= rows; ++j)
-      for (uint32_t i = 0; i <= columns; ++i) {
-        const int x = static_cast<int>(i) - kMargin, y = static_cast<int>(j) - kMargin;
-        *v++ = static_cast<float>(x);
-        *v++ = static_cast<float>(y);
-        *v++ = static_cast<float>(
-            surface.heights_m(wrap_index(x, surface.width()), wrap_index(y, surface.height())) /
-            surface.texel_size_m);
-      }
-    for (uint32_t j = 0; j < rows; ++j)
-      for (uint32_t i = 0; i < columns; ++i) {
-        const uint32_t c = j * (columns + 1) + i;
-        for (const uint32_t index : {c, c + 1, c + columns + 1, c + columns + 2, c + columns + 1, c + 1})
-          *t++ = index;
-      }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene);
-  }
-  ~BareScene() {
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
-  }
-};
-
 // The texels' rays, as the tracer shoots them, up to the border of the scene. Rays that start above the
 // relief are left out: the tracer does not trace them either.
 std::vector<RTCRay> texel_rays(const Surface& surface, const Tracer& tracer, uint32_t texel) {
   const double top = height_range_m(surface) / surface.texel_size_m;
   std::vector<RTCRay> rays;
+  const int x = static_cast<int>(texel) % surface.width(), y = static_cast<int>(texel) / surface.width();
   for (const RayRecord& record : tracer.replay_texel(texel)) {
-    RTCRay ray{};
-    ray.org_x = static_cast<float>(texel % static_cast<uint32_t>(surface.width()));
-    ray.org_y = static_cast<float>(texel / static_cast<uint32_t>(surface.width()));
-    ray.org_z = static_cast<float>(surface.heights_m[texel] / surface.texel_size_m + 1e-3);
-    ray.dir_x = static_cast<float>(record.direction.x);
-    ray.dir_y = static_cast<float>(record.direction.y);
-    ray.dir_z = static_cast<float>(record.direction.z);
-    const auto exit = [](double from, double along, double size) {
-      return along > 0   ? (size + kMargin - 1 - from) / along
-             : along < 0 ? (1 - kMargin - from) / along
-                         : HUGE_VAL;
-    };
-    double end = std::min(exit(ray.org_x, record.direction.x, surface.width()),
-                          exit(ray.org_y, record.direction.y, surface.height()));
-    if (record.direction.z > 0)
-      end = std::min(end, (top - static_cast<double>(ray.org_z)) / record.direction.z * 1.0001);
-    if (end <= 0) continue;
-    ray.tfar = static_cast<float>(end);
-    ray.mask = 0xffffffff;
-    rays.push_back(ray);
+    const RTCRay ray = texel_ray(surface, top, x, y, record.direction);
+    if (ray.tfar > 0) rays.push_back(ray);
   }
   return rays;
 }

@@ -64,6 +64,17 @@ TEST(Curves, TexelsOfAllBinsAddUp) {
   EXPECT_NEAR(sum, 142 * 21 + 15, 1e-9);  // 142 whole rounds of 0..6 and 0..5 once
 }
 
+TEST(Curves, PooledSetsKeepTheirBinsAndTheCurvesTheyShare) {
+  const Curves one = make_curves(make_bake({0.1F, 0.9F}, {{1, 2}, {0.5F, 0.25F}}), 2);
+  Curves other = make_curves(make_bake({0.3F, 0.7F}, {{1, 2}}), 4);
+  other.has_counts = false;
+  const Curves pooled = pool_curves(std::vector<Curves>{one, other});
+  EXPECT_EQ(pooled.bins.size(), 6U);
+  EXPECT_EQ(pooled.bounce_count, 1);
+  EXPECT_EQ(pooled.bins[0].bounces.size(), 1U);
+  EXPECT_FALSE(pooled.has_counts);
+}
+
 TEST(Curves, UnusableTexelsAreNamed) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW(make_curves(make_bake({0.5F, nan}, {{1, 1}}), 10), InputError);
