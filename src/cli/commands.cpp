@@ -48,6 +48,24 @@ int fail(int code, std::string message) {
   return code;
 }
 
+// An unset shell variable in quotes is never what was meant: `--links "$LINKS"` would write no links and say
+// nothing.
+void refuse_empty_arguments(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i)
+    if (*argv[i] == '\0')
+      throw InputError(fmt::format("{}: is followed by an empty argument, expected a name or a value",
+                                   i == 1 ? "hemibake" : argv[i - 1]));
+}
+
+// What CLI11 says of a command that is missing or unknown names neither it nor the others.
+std::string describe_error(const CLI::ParseError& error, const CLI::App& app, int argc, char** argv) {
+  if (!app.get_subcommands().empty()) return error.what();
+  std::string names;
+  for (const Command& command : kCommands) names += (names.empty() ? "" : ", ") + std::string(command.name);
+  return fmt::format("{}, expected one of {}",
+                     argc > 1 ? fmt::format("'{}' is no command", argv[1]) : "no command", names);
+}
+
 int run_guarded(const CommandBody& body) {
   try {
     return body();
@@ -78,10 +96,13 @@ int run_command_line(int argc, char** argv) {
     sub->callback([&chosen, body = std::move(body)] { chosen = body; });
   }
   try {
+    refuse_empty_arguments(argc, argv);
     app.parse(argc, argv);
+  } catch (const InputError& error) {
+    return fail(kExitBadInput, error.what());
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return fail(kExitBadInput, error.what());
+    return fail(kExitBadInput, describe_error(error, app, argc, argv));
   }
   return run_guarded(chosen);
 }

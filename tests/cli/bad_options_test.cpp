@@ -13,11 +13,7 @@ using testing::StartsWith;
 
 class BadOptions : public CliTest {
  protected:
-  void SetUp() override {
-    run_well("synth shapes --width 8 --height 8 -o map.png");
-    run_well("bake map.png -o done.exr --rays 4");
-    run_well("curves done.exr -o done.csv --bins 10");
-  }
+  void SetUp() override { write_map("map.png", SyntheticKind::kShapes, 8, 8); }
 
   void expect_bad(const std::string& command, const std::string& option, const std::string& value,
                   const testing::Matcher<std::string>& expectation) const {
@@ -26,71 +22,51 @@ class BadOptions : public CliTest {
   }
 };
 
-const std::vector<std::string> kNoNumbers = {"nan", "inf",   "-inf",    "12abc", "",
-                                             "1,5", "1e999", "one two", "--",    "1 2"};
-// What is a number, but for decimal digits only.
-const std::vector<std::string> kNoWholeNumbers = {
-    "1.5", "1e3", "0x10", "010", "-1", "+1", "99999999999999999999"};
+struct BadValue {
+  const char* option;
+  const char* value;
+};
 
-// Length by length, angle by angle.
-TEST_F(BadOptions, RealNumbersOfABake) {
-  struct Case {
-    const char* option;
-    std::vector<std::string> outside;
-  };
-  for (const std::string command : {"bake map.png -o bake.exr", "run map.png -o results"})
-    for (const Case& bad : std::vector<Case>{{"--size", {"0", "-1", "1e10", "1e300"}},
-                                             {"--amplitude", {"-1", "-1e-300", "1e10"}},
-                                             {"--cone", {"0", "-90", "181", "180.0001"}},
-                                             {"--max-distance", {"0", "-1"}},
-                                             {"--converge", {"0", "-1e-5", "1.5"}},
-                                             {"--memory", {"0", "-1"}}}) {
-      for (const std::string& value : bad.outside)
-        expect_bad(command, bad.option, value, HasSubstr("expected a number"));
-      for (const std::string& value : kNoNumbers) {
-        if (command[0] == 'r' && value != "nan" && value != "12abc") continue;  // the same definition
-        if (value == "--") continue;
-        expect_bad(command, bad.option, value, HasSubstr("expected a number"));
-      }
-    }
-}
-
-TEST_F(BadOptions, WholeNumbersOfABake) {
-  struct Case {
-    const char* option;
-    std::vector<std::string> outside;
-  };
-  for (const Case& bad : std::vector<Case>{{"--rays", {"0", "1048577"}},
-                                           {"--bounces", {"1001"}},
-                                           {"--max-bounces", {"0", "1000001"}},
-                                           {"--seed", {"18446744073709551616"}},
-                                           {"--threads", {"1025"}}}) {
-    std::vector<std::string> values = bad.outside;
-    values.insert(values.end(), kNoWholeNumbers.begin(), kNoWholeNumbers.end());
-    values.insert(values.end(), {"nan", "12abc", ""});
-    for (const std::string& value : values)
-      expect_bad("bake map.png -o bake.exr", bad.option, value, HasSubstr("expected a whole number"));
-    expect_bad("run map.png -o results", bad.option, bad.outside[0], HasSubstr("expected a whole number"));
-  }
-}
-
-TEST_F(BadOptions, ChoicesOfABake) {
-  for (const std::string command : {"bake map.png -o bake.exr", "run map.png -o results"})
-    for (const std::string option : {"--edge", "--tracer", "--directions", "--patches", "--texel-links",
-                                     "--outputs", "--normal-y", "--normals-from"})
-      for (const std::string value : {"cubes", "", "WRAP "})
-        expect_bad(command, option, value, HasSubstr("not in {"));
-  expect_bad("bake map.png -o bake.exr", "--channel", "Q", AnyOf(HasSubstr("expected")));
+// Every option of a bake with a value just outside; what numbers look like is in validators_test.cpp.
+TEST_F(BadOptions, OfABake) {
+  for (const auto& [option, value] : std::vector<BadValue>{{"--size", "0"},
+                                                           {"--size", "nan"},
+                                                           {"--amplitude", "-1"},
+                                                           {"--amplitude", "inf"},
+                                                           {"--cone", "0"},
+                                                           {"--cone", "181"},
+                                                           {"--max-distance", "0"},
+                                                           {"--converge", "0"},
+                                                           {"--converge", "12abc"},
+                                                           {"--memory", "0"}})
+    expect_bad("bake map.png -o bake.exr", option, value, HasSubstr("expected a number"));
+  for (const auto& [option, value] : std::vector<BadValue>{{"--rays", "0"},
+                                                           {"--rays", "1048577"},
+                                                           {"--rays", "12abc"},
+                                                           {"--bounces", "1001"},
+                                                           {"--bounces", "-1"},
+                                                           {"--max-bounces", "0"},
+                                                           {"--seed", "-1"},
+                                                           {"--seed", "18446744073709551616"},
+                                                           {"--threads", "-1"},
+                                                           {"--threads", "1025"}})
+    expect_bad("bake map.png -o bake.exr", option, value, HasSubstr("expected a whole number"));
+  for (const std::string option : {"--edge", "--tracer", "--directions", "--patches", "--texel-links",
+                                   "--outputs", "--normal-y", "--normals-from"})
+    expect_bad("bake map.png -o bake.exr", option, "cubes", HasSubstr("not in {"));
+  expect_bad("bake map.png -o bake.exr", "--outputs", "ao,cubes", HasSubstr("not in {"));
+  expect_refusal("bake map.png -o bake.exr --channel Q",
+                 "map.png: has no channel 'Q', expected the name or index of one of its channels: Y");
 }
 
 TEST_F(BadOptions, TexelsOffTheMap) {
   const std::string line = "map.png: there is no texel 8,0, expected 0,0 to 7,7";
   expect_refusal("bake map.png --texel 8,0", line);
   expect_refusal("bake map.png --texel 0,8", HasSubstr("there is no texel 0,8"));
-  for (const std::string value : {"-1,0", "0,-1", "a,0", "1.5,0", "nan,0", "99999999999,0"})
+  for (const std::string value : {"-1,0", "0,a", "99999999999,0"})
     expect_refusal("bake map.png --texel " + value,
                    AllOf(StartsWith("--texel: "), HasSubstr("expected a whole number")));
-  for (const std::string value : {"1", "1,2,3", "''"})
+  for (const std::string value : {"1", "1,2,3"})
     expect_refusal("bake map.png --texel " + value, StartsWith("--texel: "));
 }
 
@@ -111,26 +87,24 @@ TEST_F(BadOptions, MemoryIsRefusedBeforeTheWork) {
 }
 
 TEST_F(BadOptions, OfTheOtherCommands) {
-  for (const std::string value : {"0", "65537", "-1", "nan", "12abc", "", "1e2", "2.5"}) {
-    expect_bad("curves done.exr -o c.csv", "--bins", value, HasSubstr("expected a whole number"));
-    expect_bad("run map.png -o results", "--bins", value, HasSubstr("expected a whole number"));
-  }
+  expect_bad("curves done.exr -o c.csv", "--bins", "0", HasSubstr("expected a whole number"));
+  expect_bad("run map.png -o results", "--bins", "65537", HasSubstr("expected a whole number"));
+  expect_bad("run map.png -o results", "--size", "nan", HasSubstr("expected a number"));
   for (const std::string option : {"--model", "--abscissa", "--weights"})
-    for (const std::string value : {"cubic", ""})
-      expect_bad("fit done.csv -o f.json", option, value, HasSubstr("not in {"));
-  for (const std::string value : {"0", "-1", "2", "nan", "inf", "1e-5x", ""})
+    expect_bad("fit done.csv -o f.json", option, "cubic", HasSubstr("not in {"));
+  for (const std::string value : {"0", "nan", "2"})
     expect_bad("check done.exr", "--tolerance", value, HasSubstr("expected a number"));
-  for (const std::string option : {"--width", "--height"})
-    for (const std::string value : {"0", "-1", "nan", "12abc", "", "1e3", "99999999999"})
-      expect_bad("synth noise -o m.exr", option, value, HasSubstr("expected a whole number"));
-  for (const std::string value : {"0", "90", "nan", "inf", "-45", "45deg", ""})
+  for (const std::string option : {"--width", "--height", "--seed"})
+    expect_bad("synth noise -o m.exr", option, "-1", HasSubstr("expected a whole number"));
+  for (const std::string value : {"0", "90", "nan"})
     expect_bad("synth bowl -o m.exr", "--angle", value, HasSubstr("expected a number"));
-  expect_bad("synth noise -o m.exr", "--seed", "18446744073709551616", HasSubstr("expected a whole number"));
 }
 
 TEST_F(BadOptions, UnknownMissingAndDouble) {
-  expect_refusal("", testing::Not(""));
-  expect_refusal("cook map.png", HasSubstr("cook"));
+  expect_refusal("", StartsWith("no command, expected one of synth, bake, "));
+  expect_refusal("cook map.png", StartsWith("'cook' is no command, expected one of synth, bake, "));
+  expect_refusal("bake map.png -o bake.exr --size ''",
+                 StartsWith("--size: is followed by an empty argument"));
   expect_refusal("bake map.png -o bake.exr --albedo 1", HasSubstr("--albedo"));
   expect_refusal("bake map.png other.png -o bake.exr", HasSubstr("other.png"));
   expect_refusal("bake map.png -o bake.exr --size 1 --size 2", HasSubstr("--size"));

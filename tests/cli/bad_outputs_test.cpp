@@ -16,7 +16,13 @@ using testing::StartsWith;
 class BadOutputs : public CliTest {
  protected:
   void SetUp() override {
-    run_well("synth shapes --width 64 --height 64 -o map.exr");
+    write_map("map.exr", SyntheticKind::kShapes, 64, 64);
+    // What curves and fit would read, if they came to it.
+    write_bytes(folder_ / "done.exr", "no bake");
+    write_bytes(folder_ / "done.csv", "no curves");
+  }
+
+  void make_results() const {
     run_well("bake map.exr -o done.exr --rays 4");
     run_well("curves done.exr -o done.csv --bins 10");
   }
@@ -59,8 +65,13 @@ TEST_F(BadOutputs, WrongSuffix) {
                                                    HasSubstr("expected " + std::string(line.suffix))));
     expect_refusal(line.command + "out",
                    AllOf(StartsWith("out: "), HasSubstr("expected " + std::string(line.suffix))));
-    expect_refusal(line.command + "''", HasSubstr("expected"));
   }
+}
+
+TEST_F(BadOutputs, EmptyNames) {
+  expect_refusal("bake map.exr -o ''", "-o: is followed by an empty argument, expected a name or a value");
+  expect_refusal("bake map.exr -o out.exr --links ''",
+                 StartsWith("--links: is followed by an empty argument"));
 }
 
 TEST_F(BadOutputs, TheInputItself) {
@@ -91,10 +102,9 @@ TEST_F(BadOutputs, DevicesAreNotReplaced) {
 
 // Outputs larger than the limit on file sizes (ulimit counts blocks of 512 bytes in sh).
 TEST_F(BadOutputs, FilesThatMayNotGrow) {
+  make_results();
   const std::string limit = "ulimit -f 8;";
-  const auto line = [](const std::string& name) {
-    return AllOf(StartsWith(name + ": could not write"), AnyOf(HasSubstr("File too large"), HasSubstr("")));
-  };
+  const auto line = [](const std::string& name) { return name + ": could not write: File too large"; };
   expect_refusal("synth noise --width 64 --height 64 -o out.exr", line("out.exr"), limit);
   expect_refusal("synth noise --width 64 --height 64 -o out.png", line("out.png"), limit);
   expect_refusal("bake map.exr -o out.exr --rays 4", line("out.exr"), limit);
@@ -105,10 +115,11 @@ TEST_F(BadOutputs, FilesThatMayNotGrow) {
 }
 
 TEST_F(BadOutputs, FullDisk) {
+  make_results();
   const SmallDisk disk;
   if (!disk.mounted()) GTEST_SKIP() << "may not mount a disk";
   const std::string at = (disk / "").string();
-  run_well("synth noise --width 256 --height 256 -o large.exr");
+  write_map("large.exr", SyntheticKind::kNoise, 256, 256);
   const auto expect_full = [&](const std::string& arguments, const std::string& name) {
     expect_refusal(arguments, StartsWith(at + name + ": could not write: No space left on device"));
     EXPECT_EQ(disk.count(), 0U) << arguments;
@@ -120,6 +131,7 @@ TEST_F(BadOutputs, FullDisk) {
 }
 
 TEST_F(BadOutputs, StandardOutputThatIsFull) {
+  make_results();
   const CommandResult result = run("check done.exr --json >/dev/full");
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.standard_error, "hemibake: standard output: could not write: No space left on device\n");

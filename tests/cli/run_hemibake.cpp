@@ -5,6 +5,8 @@
 
 #include <cstdlib>
 
+#include "io/image_io.h"
+
 namespace hemibake {
 
 namespace fs = std::filesystem;
@@ -20,6 +22,14 @@ CommandResult run_shell(const std::string& line) {
 
 CommandResult run_hemibake(const std::string& arguments) {
   return run_shell("'" HEMIBAKE_BINARY "' " + arguments);
+}
+
+void CliTest::write_map(const std::string& name, SyntheticKind kind, int width, int height) const {
+  write_map(name, synthesize(kind, {.width = width, .height = height, .seed = 1, .angle_rad = {}}).heights);
+}
+
+void CliTest::write_map(const std::string& name, const Grid<float>& heights) const {
+  write_height_map(folder_ / name, heights, make_provenance("test"));
 }
 
 CommandResult CliTest::run(const std::string& arguments, const std::string& before) const {

@@ -9,7 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/grid.h"
 #include "io/io_testing.h"
+#include "surface/synthetic.h"
 
 namespace hemibake {
 
@@ -28,6 +30,9 @@ CommandResult run_hemibake(const std::string& arguments);
 // A test with a folder of its own in which hemibake runs.
 class CliTest : public testing::Test {
  protected:
+  void write_map(const std::string& name, SyntheticKind kind, int width, int height) const;
+  void write_map(const std::string& name, const Grid<float>& heights) const;
+
   // before: what the shell does first ("ulimit -f 8; ").
   CommandResult run(const std::string& arguments, const std::string& before = "") const;
   // As run, for what has to succeed.

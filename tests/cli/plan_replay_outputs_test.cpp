@@ -1,0 +1,117 @@
+// What is said before a bake, what one texel says of itself, and that only what was asked for is made.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "cli/run_hemibake.h"
+#include "io/bake_file.h"
+#include "io/image_io.h"
+
+namespace hemibake {
+namespace {
+
+using testing::HasSubstr;
+
+class Plan : public CliTest {};
+
+TEST_F(Plan, SaysTheMemoryTheBakeThenTakes) {
+  write_map("map.exr", SyntheticKind::kBricks, 256, 256);
+  const auto before = listing();
+  const nlohmann::json plan = run_json("bake map.exr --rays 64 --dry-run");
+  EXPECT_THAT(run_well("bake map.exr --rays 64 --dry-run").standard_output, HasSubstr("memory "));
+  EXPECT_EQ(listing(), before);
+  const nlohmann::json bake = run_json("bake map.exr -o bake.exr --rays 64");
+  const double ratio = bake.at("peak_memory_bytes").get<double>() / plan.at("memory_bytes").get<double>();
+  EXPECT_GT(ratio, 0.5);
+  EXPECT_LT(ratio, 2.0);
+  EXPECT_EQ(bake.at("rays_traced"), plan.at("rays"));
+  // Four standard errors of some hundred rows are a few percent.
+  EXPECT_NEAR(bake.at("links").get<double>() / plan.at("links").get<double>(), 1, 0.1);
+}
+
+class Replay : public CliTest {
+ protected:
+  void expect_consistent(const std::string& options) const {
+    run_well("bake map.exr -o bake.exr " + options);
+    const Bake bake = read_bake(folder_ / "bake.exr").bake;
+    for (const auto& [x, y] : {std::pair{0, 0}, {31, 23}, {13, 7}}) {
+      const nlohmann::json texel = run_json(fmt::format("bake map.exr --texel {},{} {}", x, y, options));
+      double cosine_sum = 0, sky = 0, uniform_sum = 0, uniform_sky = 0, links = 0;
+      for (const auto& ray : texel.at("rays")) {
+        const double cosine = ray.at("cosine_weight"), uniform = ray.at("uniform_weight");
+        cosine_sum += cosine;
+        uniform_sum += uniform;
+        if (ray.at("hit").get<bool>()) continue;
+        sky += cosine;
+        uniform_sky += uniform;
+      }
+      for (const auto& link : texel.at("links")) links += link.at("weight").get<double>();
+      const double direct = texel.at("direct_over_pi"), ao = texel.at("ao");
+      // Sums of 64 doubles, and of floats for the links.
+      EXPECT_NEAR(cosine_sum, 1, 1e-12);
+      EXPECT_NEAR(uniform_sum, 1, 1e-12);
+      EXPECT_NEAR(direct, sky, 1e-12);
+      EXPECT_NEAR(ao, uniform_sky, 1e-12);
+      EXPECT_NEAR(links, 1 - sky, 1e-6);
+      // The planes hold the same as floats.
+      EXPECT_EQ(static_cast<float>(ao), bake.visible_fraction(x, y));
+      EXPECT_NEAR(direct * M_PI, static_cast<double>(bake.irradiance[0](x, y)), 1e-6);
+    }
+  }
+};
+
+TEST_F(Replay, IsTheBakedTexel) {
+  write_map("map.exr", SyntheticKind::kBricks, 32, 24);
+  expect_consistent("--rays 64");
+  expect_consistent("--rays 64 --patches texels --edge open --directions cosine --cone 170 --seed 9");
+}
+
+class Outputs : public CliTest {
+ protected:
+  std::set<std::string> channels_of(const std::string& options) const {
+    run_well("bake map.exr -o bake.exr --rays 4 --bounces 1 " + options);
+    const std::vector<std::string> channels = read_image_header(folder_ / "bake.exr").channels;
+    return {channels.begin(), channels.end()};
+  }
+};
+
+TEST_F(Outputs, AreExactlyThoseAskedFor) {
+  write_map("map.exr", SyntheticKind::kShapes, 16, 16);
+  const std::set<std::string> light = {"irradiance.00", "irradiance.01", "total", "residual"};
+  using Names = std::set<std::string>;
+  EXPECT_EQ(channels_of("--outputs ao"), Names({"ao"}));
+  EXPECT_EQ(channels_of("--outputs irradiance"), light);
+  EXPECT_EQ(channels_of("--outputs bent,normal"),
+            Names({"bent.X", "bent.Y", "bent.Z", "normal.X", "normal.Y", "normal.Z"}));
+  Names all = light;
+  all.insert({"ao", "bent.X", "bent.Y", "bent.Z", "normal.X", "normal.Y", "normal.Z"});
+  EXPECT_EQ(channels_of(""), all);
+  EXPECT_EQ(channels_of("--outputs normal,ao,bent,irradiance,ao"), all);
+}
+
+TEST_F(Outputs, LinksOnlyWhereTheyAreNeeded) {
+  write_map("map.exr", SyntheticKind::kBricks, 128, 128);
+  const auto bake = [&](const std::string& options) {
+    return run_json("bake map.exr -o bake.exr --rays 64 " + options);
+  };
+  const nlohmann::json whole = bake("");
+  EXPECT_GT(whole.at("links"), 128 * 128);
+  for (const std::string options :
+       {"--outputs ao", "--outputs ao,bent,normal", "--outputs irradiance --bounces 0"}) {
+    const nlohmann::json json = bake(options);
+    EXPECT_FALSE(json.contains("links")) << options;
+    EXPECT_FALSE(json.contains("row_sum_error")) << options;
+    // Facets are not traced either.
+    EXPECT_EQ(json.at("rays_traced"), 128 * 128 * 64) << options;
+    // 8 bytes a link less.
+    EXPECT_LT(json.at("peak_memory_bytes").get<double>(),
+              whole.at("peak_memory_bytes").get<double>() - 4 * whole.at("links").get<double>())
+        << options;
+  }
+  EXPECT_TRUE(bake("--outputs ao --links links.h5").contains("links"));
+}
+
+}  // namespace
+}  // namespace hemibake

@@ -1,0 +1,40 @@
+// The bytes of every file are the same on every run and at any thread count.
+#include "cli/run_hemibake.h"
+
+namespace hemibake {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SameBytes : public CliTest {
+ protected:
+  void expect_same(const std::string& options) const {
+    for (const std::string name : {"one", "again", "two"}) {
+      fs::create_directory(folder_ / name);
+      const CommandResult result = run("run ../map.exr -o results --links links.h5 " + options +
+                                           (name == "two" ? " --threads 2" : " --threads 1"),
+                                       "cd " + name + " &&");
+      ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+    }
+    for (const std::string file :
+         {"results/bake.exr", "results/curves.csv", "results/fit.json", "results/check.json", "links.h5"}) {
+      const std::string bytes = read_bytes(folder_.path() / "one" / file);
+      EXPECT_FALSE(bytes.empty()) << file;
+      EXPECT_TRUE(bytes == read_bytes(folder_.path() / "again" / file)) << file << " differs on repetition";
+      EXPECT_TRUE(bytes == read_bytes(folder_.path() / "two" / file)) << file << " differs with two threads";
+    }
+  }
+};
+
+TEST_F(SameBytes, WithFacets) {
+  write_map("map.exr", SyntheticKind::kBricks, 96, 80);
+  expect_same("--rays 64");
+}
+
+TEST_F(SameBytes, WithTexelsAndOpenEdges) {
+  write_map("map.exr", SyntheticKind::kShapes, 96, 80);
+  expect_same("--rays 64 --amplitude 0.45 --patches texels --edge open");
+}
+
+}  // namespace
+}  // namespace hemibake
