@@ -164,7 +164,7 @@ class Reader {
 
   [[noreturn]] void refuse_value(const std::string& channel, size_t texel, float value) const {
     const auto width = static_cast<size_t>(spec_.width);
-    refuse(path_, fmt::format("channel {} is {} at texel ({}, {}), expected a finite number", channel, value,
+    refuse(path_, fmt::format("channel {} is {} at texel {},{}, expected a finite number", channel, value,
                               texel % width, texel / width));
   }
 

@@ -34,10 +34,12 @@ TEST_F(Extremes, OneTexelAndOneRow) {
       const Bake result = bake("map.exr --rays 64 --amplitude 0.5 --converge 1e-5 --patches " + patches);
       EXPECT_EQ(result.width, width);
       EXPECT_EQ(result.height, height);
-      if (width * height == 1) EXPECT_EQ(result.visible_fraction[0], 1);
+      if (width * height == 1) {
+        EXPECT_EQ(result.visible_fraction[0], 1);
+      }
+      if (patches == "texels") continue;
       for (const float total : result.total.values)
-        if (patches == "facets")
-          EXPECT_NEAR(static_cast<double>(total) / kPi, 1, 2e-5) << width << "x" << height;
+        EXPECT_NEAR(static_cast<double>(total) / kPi, 1, 2e-5) << width << "x" << height;
     }
   }
 }

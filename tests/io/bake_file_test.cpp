@@ -134,7 +134,7 @@ TEST(BakeFile, NanIsABugThatNamesChannelAndTexel) {
   EXPECT_THAT(error_of<std::logic_error>([&] {
                 write_bake(folder / "bake.exr", bake, {{"version", "0"}});
               }),
-              HasSubstr("bake.exr: channel irradiance.01 is nan at texel (4, 17), expected a finite number"));
+              HasSubstr("bake.exr: channel irradiance.01 is nan at texel 4,17, expected a finite number"));
   bake.irradiance[1](4, 17) = 0;
   bake.bent_normals(9, 19).z = INFINITY;
   EXPECT_THAT(error_of<std::logic_error>([&] {

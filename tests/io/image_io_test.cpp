@@ -179,7 +179,7 @@ TEST_F(ImageIo, PngRefusesWhatItCannotHold) {
     heights(2, 1) = bad;
     EXPECT_THAT(
         error_of<InputError>([&] { write_height_map(folder_ / "a.png", heights, Provenance::object()); }),
-        AllOf(HasSubstr("a.png: channel Y is "), HasSubstr("at texel (2, 1), expected 0..1 in a PNG")));
+        AllOf(HasSubstr("a.png: channel Y is "), HasSubstr("at texel 2,1, expected 0..1 in a PNG")));
   }
   const std::vector<float> zeros(1);
   const std::vector<Plane> five(5, {"a", zeros.data()});

@@ -40,7 +40,7 @@ TEST_F(ImageRefusals, RefusesValuesThatAreNotFinite) {
     for (const char* name : {"bad.exr", "bad.tif"}) {
       write_foreign(folder_ / name, spec_of(5, 100, {"R", "G", "B"}), values);
       EXPECT_THAT(refusal(name),
-                  AllOf(HasSubstr("bad."), HasSubstr("channel G is "), HasSubstr("at texel (4, 71)")));
+                  AllOf(HasSubstr("bad."), HasSubstr("channel G is "), HasSubstr("at texel 4,71")));
       EXPECT_EQ(read_height_map(folder_ / name, "R")[0], 0.5f);  // the bad channel was not asked for
     }
   }
