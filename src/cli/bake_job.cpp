@@ -234,12 +234,12 @@ std::string describe_plan(const BakeJob& job) {
   const BakePlan& plan = job.plan;
   const auto gib = [](size_t bytes) { return static_cast<double>(bytes) / kGib; };
   return fmt::format(
-      "memory    {:.3f} GiB: surface and scene {:.3f}, links {:.3f}, planes {:.3f}\n"
+      "memory    {:.3f} GiB: program {:.3f}, surface and scene {:.3f}, links {:.3f}, planes {:.3f}\n"
       "work      {:.1f} M rays, {:.1f} M links, {} bounces: about {:.0f} cpu-s tracing, {:.0f} cpu-s "
       "bouncing\n",
-      gib(plan.memory_bytes()), gib(plan.surface_bytes), gib(plan.link_bytes), gib(plan.plane_bytes),
-      1e-6 * static_cast<double>(plan.rays), 1e-6 * static_cast<double>(plan.links), job.options.bounces,
-      plan.trace_cpu_seconds, plan.bounce_cpu_seconds);
+      gib(plan.memory_bytes()), gib(BakePlan::kProgramBytes), gib(plan.surface_bytes), gib(plan.link_bytes),
+      gib(plan.plane_bytes), 1e-6 * static_cast<double>(plan.rays), 1e-6 * static_cast<double>(plan.links),
+      job.options.bounces, plan.trace_cpu_seconds, plan.bounce_cpu_seconds);
 }
 
 nlohmann::ordered_json json_from_plan(const BakeJob& job) {

@@ -7,11 +7,13 @@
 
 #include "core/parallel.h"
 #include "core/statistics.h"
+#include "sampling/low_discrepancy.h"
 
 namespace hemibake {
 namespace {
 
 constexpr uint32_t kPilotRows = 512;
+constexpr uint64_t kPilotStream = 100;
 constexpr size_t kBytesPerLink = 8;  // patch index and weight
 // Seconds a link takes in a bounce: measured 1–2 ns where the light under way fits the cache.
 constexpr double kSecondsPerLink = 2e-9;
@@ -22,7 +24,8 @@ struct Pilot {
   double cpu_seconds = 0;
 };
 
-// Rows spread evenly over [0, count), traced on this thread.
+// Rows spread over [0, count), one at random in each of equal strata (a fixed step would meet the same
+// columns of the map again and again), traced on this thread.
 template <class TraceRow>
 Pilot trace_pilot(uint32_t count, const TraceRow& trace_row) {
   Pilot pilot;
@@ -31,7 +34,8 @@ Pilot trace_pilot(uint32_t count, const TraceRow& trace_row) {
   const uint32_t rows = std::min(count, kPilotRows);
   const double start = process_cpu_seconds();
   for (uint32_t i = 0; i < rows; ++i) {
-    trace_row(static_cast<uint32_t>(uint64_t{count} * i / rows), row, counts);
+    const double place = (i + unit_interval(mix_bits(0, kPilotStream, i))) / rows;
+    trace_row(std::min(count - 1, static_cast<uint32_t>(place * count)), row, counts);
     pilot.links.add(static_cast<double>(row.links.size()));
   }
   pilot.cpu_seconds = process_cpu_seconds() - start;

@@ -17,7 +17,10 @@ struct BakePlan {
   double trace_cpu_seconds = 0;  // from the pilot
   double bounce_cpu_seconds = 0;
 
-  size_t memory_bytes() const { return surface_bytes + link_bytes + plane_bytes; }
+  // The program with its libraries, before it has read anything (measured; most of it OpenImageIO's).
+  static constexpr size_t kProgramBytes = size_t{150} << 20;
+
+  size_t memory_bytes() const { return kProgramBytes + surface_bytes + link_bytes + plane_bytes; }
 };
 
 struct PlanOptions {
