@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <optional>
+#include <vector>
 
 #include "core/constants.h"
 #include "core/parallel.h"
@@ -58,13 +59,11 @@ struct HorizonWalk {
   double radius_texels;
   double unseen_angle;  // of the horizon where nothing rises
 
-  // Angle from the vertical of the highest sample along a direction.
-  double horizon(int x, int y, const glm::dvec2& direction, double shift) const {
+  // Angle from the vertical of the highest of the samples at these distances along a direction.
+  double horizon(int x, int y, const glm::dvec2& direction, const std::vector<double>& distances) const {
     const double here = surface.heights_m(x, y);
     double highest_slope = -HUGE_VAL;
-    for (int k = 0; k < options.steps; ++k) {
-      const double far = radius_texels * std::pow((k + shift) / options.steps, options.step_power);
-      const double distance = std::max(far, kNearestSampleTexels);
+    for (const double distance : distances) {
       const auto height = height_at(surface, x + distance * direction.x, y + distance * direction.y);
       if (!height) break;
       highest_slope = std::max(highest_slope, (*height - here) / (distance * surface.texel_size_m));
@@ -73,9 +72,21 @@ struct HorizonWalk {
     return std::min(unseen_angle, kPi / 2 - std::atan(highest_slope));
   }
 
+  std::vector<double> sample_distances(double shift) const {
+    std::vector<double> distances(static_cast<size_t>(options.steps));
+    for (int k = 0; k < options.steps; ++k) {
+      const double far = radius_texels * std::pow((k + shift) / options.steps, options.step_power);
+      distances[static_cast<size_t>(k)] = std::max(far, kNearestSampleTexels);
+    }
+    return distances;
+  }
+
   SkySum sky_of(int x, int y) const {
     const uint64_t texel = surface.heights_m.index(x, y);
     const double turn = options.jitter ? unit_interval(mix_bits(options.seed, texel, 0)) : 0.0;
+    // 1 − u lies in (0, 1].
+    const double shift = options.jitter ? 1 - unit_interval(mix_bits(options.seed, texel, 1)) : 1.0;
+    const std::vector<double> distances = sample_distances(shift);
     const glm::dvec3 normal(surface.normals(x, y));
     const int slices = options.azimuths / 2;
     SkySum sky;
@@ -84,12 +95,8 @@ struct HorizonWalk {
       const glm::dvec2 along(std::cos(azimuth), std::sin(azimuth));
       const double run = normal.x * along.x + normal.y * along.y;
       const double gamma = std::atan2(run, normal.z);
-      // 1 − u lies in (0, 1].
-      const double shift =
-          options.jitter ? 1 - unit_interval(mix_bits(options.seed, texel, static_cast<uint64_t>(slice) + 1))
-                         : 1.0;
-      const double low = std::max(-horizon(x, y, -along, shift), gamma - kPi / 2);
-      const double high = std::min(horizon(x, y, along, shift), gamma + kPi / 2);
+      const double low = std::max(-horizon(x, y, -along, distances), gamma - kPi / 2);
+      const double high = std::min(horizon(x, y, along, distances), gamma + kPi / 2);
       sky.add_slice({along.x, along.y, 0}, std::hypot(run, normal.z), gamma, low, high);
     }
     sky.uniform /= slices;
