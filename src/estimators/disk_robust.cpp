@@ -1,5 +1,6 @@
 #include "estimators/disk_robust.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "estimators/disk_passes.h"
@@ -108,7 +109,7 @@ Estimate estimate_disk_robust(const Surface& surface, const DiskRobustOptions& o
   estimate.ao = Grid<float>(surface.width(), surface.height());
   estimate.bent_normals = Grid<glm::vec3>(surface.width(), surface.height());
 
-  const uint64_t facet_passes = static_cast<uint64_t>(options.passes) - 1;
+  const auto facet_passes = static_cast<uint64_t>(std::max(0, options.passes - 1));
   Progress progress("disk-robust", passes.disks.size() * facet_passes + estimate.ao.size(), "receiver");
   std::vector<double> accessibility(passes.disks.size(), 1.0);
   for (uint64_t pass = 0; pass < facet_passes; ++pass)
