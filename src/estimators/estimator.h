@@ -1,0 +1,35 @@
+// Approximate AO: every method behind one signature, in one table. None of them traces a ray.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "estimators/alchemy.h"
+#include "estimators/disk.h"
+#include "estimators/disk_robust.h"
+#include "estimators/estimate.h"
+#include "estimators/horizon.h"
+
+namespace hemibake {
+
+// Each estimator reads its own.
+struct EstimatorOptions {
+  DiskOptions disk;
+  DiskRobustOptions disk_robust;
+  AlchemyOptions alchemy;
+  HorizonOptions horizon;
+};
+
+struct Estimator {
+  const char* name;
+  const char* description;  // one line
+  // The same bytes at any thread count. Throws Interrupted.
+  Estimate (*estimate)(const Surface& surface, const EstimatorOptions& options);
+};
+
+std::span<const Estimator> estimators();
+
+// nullptr where there is none of that name.
+const Estimator* find_estimator(std::string_view name);
+
+}  // namespace hemibake
