@@ -8,12 +8,13 @@ namespace {
 
 class Interrupt : public CliTest {
  protected:
-  // Sends `signal` to work that would take minutes after it has begun.
+  // Sends `signal` to work that would take minutes after it has begun; once: the second one kills
+  // (--foreground: timeout would send it to its process group as well).
   void expect_clean_end(const std::string& arguments, const std::string& signal) const {
     const auto files = listing();
-    const CommandResult result =
-        run_shell(fmt::format("cd '{}' && exec timeout --preserve-status --signal {} 1.5 '{}' {} --threads 1",
-                              folder_.path().string(), signal, HEMIBAKE_BINARY, arguments));
+    const CommandResult result = run_shell(fmt::format(
+        "cd '{}' && exec timeout --foreground --preserve-status --signal {} 1.5 '{}' {} --threads 1",
+        folder_.path().string(), signal, HEMIBAKE_BINARY, arguments));
     EXPECT_EQ(result.exit_code, 130) << arguments;
     EXPECT_EQ(result.standard_output, "");
     EXPECT_EQ(result.standard_error, "hemibake: interrupted, no file was left half written\n");
