@@ -15,8 +15,8 @@ struct BenchMap {
 
 inline std::vector<BenchMap> bench_maps(int side) {
   std::vector<BenchMap> maps;
-  maps.push_back({"bricks 0.1 m", synthetic_surface(SyntheticKind::kNoise, side, side, 0.1)});
-  maps.push_back({"shapes 0.45 m", synthetic_surface(SyntheticKind::kNoise, side, side, 0.45)});
+  maps.push_back({"bricks 0.1 m", synthetic_surface(SyntheticKind::kBricks, side, side, 0.1)});
+  maps.push_back({"shapes 0.45 m", synthetic_surface(SyntheticKind::kShapes, side, side, 0.45)});
   return maps;
 }
 
