@@ -51,19 +51,45 @@ void check_numbers(const NamedFit& named, Checks& checks) {
       {named.name + ": rms of the fit", named.fit.rms, 0, std::numeric_limits<double>::infinity(), ""});
 }
 
+// Of the fits called `direct` and `bounces`, all parameters by name; empty unless both are there.
+std::map<std::string, double> parameters_of(const FitFile& file, const char* direct, const char* bounces) {
+  std::map<std::string, double> parameters;
+  int found = 0;
+  for (const NamedFit& named : file.fits) {
+    if (named.name != direct && named.name != bounces) continue;
+    ++found;
+    for (const FitParameter& parameter : named.fit.parameters) parameters[parameter.name] = parameter.value;
+  }
+  if (found < 2) parameters.clear();
+  return parameters;
+}
+
+void append_model_checks(const char* name, Checks model_checks, bool judged, Checks& checks) {
+  for (Check& check : model_checks) {
+    check.quantity = fmt::format("{}: {}", name, check.quantity);
+    if (!judged) check.tolerance = std::numeric_limits<double>::infinity();
+    checks.push_back(std::move(check));
+  }
+}
+
+// The bounded model is what export writes: where it is there, it is judged, and the published one, which is
+// 0/0 at α = 1 and may have poles before, is shown.
 Checks checks_of_fit(const FitFile& file, double tolerance) {
   Checks checks;
-  std::map<std::string, double> published;
-  for (const NamedFit& named : file.fits) {
-    check_numbers(named, checks);
-    if (named.name != "F0" && named.name != "F1") continue;
-    for (const FitParameter& parameter : named.fit.parameters) published[parameter.name] = parameter.value;
-  }
-  if (published.contains("k") && published.contains("e") && published.contains("A") &&
-      published.contains("B")) {
-    const PublishedModel model{published["k"], published["e"], published["A"], published["B"]};
-    for (Check& check : check_model(model, tolerance)) checks.push_back(std::move(check));
-  }
+  for (const NamedFit& named : file.fits) check_numbers(named, checks);
+  auto bounded = parameters_of(file, "bounded_F0", "bounded_tau");
+  auto published = parameters_of(file, "F0", "F1");
+  if (!bounded.empty())
+    append_model_checks(
+        "bounded",
+        check_model(BoundedModel{bounded["k0"], bounded["k1"], bounded["q"], bounded["d"]}, tolerance), true,
+        checks);
+  if (!published.empty())
+    append_model_checks(
+        "published",
+        check_model(PublishedModel{published["k"], published["e"], published["A"], published["B"]},
+                    tolerance),
+        bounded.empty(), checks);
   return checks;
 }
 
