@@ -77,6 +77,9 @@ T total_factor(X direct, X blocked, const T& escape, X albedo) {
   return direct + blocked * (out / (X(1) - albedo + out));
 }
 
+// 1 − τ of the published formulas is 0 at α = 0; this in its place keeps the total defined at ρ = 1.
+inline constexpr double kSmallestEscape = 1e-30;
+
 // Multi-bounce visibility as a cubic, Jimenez et al., "Practical Real-Time Strategies for Accurate Indirect
 // Occlusion", 2016, chapter 5, without its max(V, ·): ((aV + b)V + c)V with a = p0 ρ + p1, b = p2 ρ + p3, c =
 // p4 ρ + p5. visibility: E₀/π, the cosine-weighted visible fraction, not α.

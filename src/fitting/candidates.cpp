@@ -138,7 +138,8 @@ Prediction guarded(const Curves& curves) {
     const double direct = std::min(direct_factor(ao, c.k, c.e), 1.0);
     const double blocked = 1 - direct;
     const double first = first_bounce_factor(ao, c.a, c.b);
-    return total_factor(direct, blocked, first < blocked ? std::max(first / blocked, 1e-30) : 1.0, albedo);
+    return total_factor(direct, blocked, first < blocked ? std::max(first / blocked, kSmallestEscape) : 1.0,
+                        albedo);
   };
 }
 

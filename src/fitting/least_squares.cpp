@@ -15,8 +15,8 @@ namespace {
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr int kMaxSteps = 1000;
-constexpr size_t kStartsTried =
-    3;  // of those a formula offers, by cost: the least is not always in the right valley
+// Of the starts a formula offers, by cost: the first is not always in the right valley.
+constexpr size_t kStartsTried = 3;
 
 // Ratio of the smallest to the largest singular value of the Jacobian, its columns scaled to length 1, below
 // which the parameters are not determined: its square, the condition of JᵀJ, is then at the rounding of a

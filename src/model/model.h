@@ -90,7 +90,7 @@ struct GuardedModel {
   T escape(T ao) const {
     const T blocked = 1 - direct(ao);
     const T first = published.first_bounce(ao);
-    return first < blocked ? std::max(first / blocked, kSmallestEscape<T>) : T(1);
+    return first < blocked ? std::max(first / blocked, static_cast<T>(kSmallestEscape)) : T(1);
   }
   template <class T>
   T first_bounce(T ao) const {
@@ -105,10 +105,6 @@ struct GuardedModel {
     const T from_sky = direct(ao);
     return std::min(total_factor(from_sky, 1 - from_sky, escape(ao), albedo), T(1));
   }
-
-  // Of 1 − τ, which is 0 at α = 0: keeps the total defined at ρ = 1.
-  template <class T>
-  static constexpr T kSmallestEscape = T(1e-30);
 };
 
 // Jimenez et al. 2016 (closed_forms.h, jimenez_cubic), by default with their constants. No F₁ or τ: all

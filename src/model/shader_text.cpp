@@ -196,7 +196,7 @@ std::string shader_text(const GuardedModel& model, Language language,
                         const std::vector<std::string>& origin) {
   const PublishedModel& p = model.published;
   const Constants constants = {
-      {"$k", p.k}, {"$e", p.e}, {"$a", p.a}, {"$b", p.b}, {"#tiny", GuardedModel::kSmallestEscape<double>}};
+      {"$k", p.k}, {"$e", p.e}, {"$a", p.a}, {"$b", p.b}, {"#tiny", kSmallestEscape}};
   return assemble(kGuarded, constants, language, origin);
 }
 
