@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "model/model.h"
 #include "report/html_folder.h"
 #include "report/html_planes.h"
 
