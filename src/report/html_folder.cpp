@@ -17,8 +17,14 @@ namespace fs = std::filesystem;
 
 constexpr int kDefaultBins = 100;
 
-nlohmann::ordered_json read_if_there(const fs::path& path) {
-  return fs::exists(path) ? read_json(path) : nlohmann::ordered_json(nullptr);
+// Null where the file is not there. list: what it has to have, none if empty.
+nlohmann::ordered_json read_if_there(const fs::path& path, const char* list) {
+  if (!fs::exists(path)) return nullptr;
+  nlohmann::ordered_json json = read_json(path);
+  if (!json.is_object()) throw InputError(path.string() + ": is not an object of JSON, expected one");
+  if (*list != '\0' && (!json.contains(list) || !json[list].is_array()))
+    throw InputError(fmt::format("{}: has no list \"{}\", expected one", path.string(), list));
+  return json;
 }
 
 std::optional<double> amplitude_of(const fs::path& path) {
@@ -48,9 +54,9 @@ ReportFolder read_report_folder(const fs::path& path) {
   if (fs::exists(path / "bake.exr")) folder.bake = read_bake(path / "bake.exr");
   if (fs::exists(path / "curves.csv")) folder.curves = read_curves(path / "curves.csv");
   if (fs::exists(path / "fit.json")) folder.fits = read_fits(path / "fit.json");
-  folder.check = read_if_there(path / "check.json");
-  folder.run = read_if_there(path / "run.json");
-  folder.trade = read_if_there(path / "trade.json");
+  folder.check = read_if_there(path / "check.json", "checks");
+  folder.run = read_if_there(path / "run.json", "");
+  folder.trade = read_if_there(path / "trade.json", "runs");
   read_sweep(path, folder.sweep);
   read_sweep(path / "sweep", folder.sweep);
   std::ranges::sort(folder.sweep, {}, &SweepCurves::amplitude_m);

@@ -72,7 +72,7 @@ function common(): Option {
 }
 
 export function grid(more: Option = {}): Option {
-  return { left: 56, right: 18, top: 44, bottom: 46, ...more };
+  return { left: 62, right: 18, top: 44, bottom: 46, outerBoundsMode: 'none', ...more };
 }
 
 export function legend(more: Option = {}): Option {
@@ -123,6 +123,7 @@ export function band(name: string, low: Pair[], high: Pair[], color: string, mor
     name,
     data: [[low.length > 0 ? low[0][0] : 0, 0]],
     silent: true,
+    color,
     tooltip: { show: false },
     renderItem: (_: unknown, api: { coord(at: number[]): number[] }) => ({
       type: 'polygon',

@@ -129,6 +129,7 @@ function showSum(points: Point[], bounces: number): void {
         const nearest = sum.reduce((best, each) => (Math.abs(each[0] - ao) < Math.abs(best[0] - ao) ? each : best), sum[0]);
         return nearest ? `<b>α ${nearest[0].toFixed(3)}</b><br>Σ E_b/π ${nearest[1]!.toFixed(4)}` : '';
       } }),
+      grid: grid({ top: 16 }),
       xAxis: aoAxis(),
       yAxis: axis('Σ E_b / π at albedo 1', { nameGap: 42, min: 0, max: (range: { max: number }) => Math.max(1.1, Math.ceil(10 * range.max) / 10) }),
       series: [

@@ -1,9 +1,9 @@
 // The models against the data: direct light, all bounces at each albedo, and the ratio of the bounces.
 
-import { aoAxis, axis, band, chart, curve, dashed, legend, line, type Option, type Pair } from './chart';
+import { aoAxis, axis, band, chart, curve, dashed, grid, legend, line, type Option, type Pair } from './chart';
 import { pointsOf, report, totalOf, type Point } from './data';
 import { h, number, place, say } from './dom';
-import { currentModel, models, publishedDirect, publishedFirstBounce } from './model';
+import { currentModel, models, publishedDirect, publishedFirstBounce, type Model } from './model';
 import { ramp, theme } from './theme';
 
 const kNoCurves = 'The folder has no curves to hold the models against; the models are shown alone.';
@@ -14,6 +14,12 @@ export function showModels(): void {
   showDirect(points);
   showAlbedos(points);
   showRatio(points);
+}
+
+// The model chosen in ink.
+function colorOf(model: Model): string {
+  const t = theme();
+  return model === currentModel() ? t.ink : model.data.id === 'notes' ? t.faint : t.third;
 }
 
 function showDirect(points: Point[]): void {
@@ -29,8 +35,8 @@ function showDirect(points: Point[]): void {
       series.push(band('spread', pairs((point) => point.mean[0] - point.spread[0]), pairs((point) => point.mean[0] + point.spread[0]), t.accent));
     if (points.length > 0) series.push(line('data E₀/π', pairs((point) => point.mean[0]), t.accent, { z: 4, lineStyle: { width: 2.5, color: t.accent } }));
     for (const model of models)
-      series.push(line(`F₀, ${model.data.title}`, curve((ao) => model.direct(ao)), model === currentModel() ? t.ink : t.third,
-        { z: 5, lineStyle: { width: model === currentModel() ? 1.75 : 1, color: model === currentModel() ? t.ink : t.third, type: model.data.id === 'notes' ? [2, 3] : 'solid' } }));
+      series.push(line(`F₀, ${model.data.title}`, curve((ao) => model.direct(ao)), colorOf(model),
+        { z: 5, lineStyle: { width: model === currentModel() ? 1.75 : 1.25, color: colorOf(model), type: model.data.id === 'notes' ? [2, 3] : 'solid' } }));
     return {
       legend: legend({ data: series.map((each) => each.name).filter((name) => name !== 'spread') }),
       xAxis: aoAxis(), yAxis: axis('E₀ / π', { min: 0, max: 1, nameGap: 40 }), series,
@@ -51,6 +57,7 @@ function showAlbedos(points: Point[]): void {
     }
     return {
       legend: { show: false },
+      grid: grid({ top: 16 }),
       tooltip: { show: false },
       xAxis: aoAxis(),
       yAxis: axis('E / π', { min: 0, max: 1.05, nameGap: 40 }),
@@ -92,11 +99,10 @@ function showRatio(points: Point[]): void {
     }
     for (const model of models)
       if (model.data.id !== 'notes')
-        series.push(line(`τ, ${model.data.title}`, curve((ao) => 1 - model.escape(ao)), model === currentModel() ? t.ink : t.third,
-          { lineStyle: { width: 1.75, color: model === currentModel() ? t.ink : t.third } }));
+        series.push(line(`τ, ${model.data.title}`, curve((ao) => 1 - model.escape(ao)), colorOf(model), { lineStyle: { width: 1.75, color: colorOf(model) } }));
     const fine = Array.from({ length: 2001 }, (_, i) => i / 2000);
-    series.push(line('τ, 2018 as published', fine.map((ao): Pair => { const tau = raw(ao); return [ao, Math.abs(tau) < 3 ? tau : null]; }), t.third,
-      { lineStyle: { width: 1.25, color: t.third, type: [2, 3] },
+    series.push(line('τ, 2018 as published', fine.map((ao): Pair => { const tau = raw(ao); return [ao, Math.abs(tau) < 3 ? tau : null]; }), t.faint,
+      { lineStyle: { width: 1.5, color: t.faint, type: [2, 3] },
         markLine: pole === null ? undefined : { silent: true, symbol: 'none', lineStyle: { color: t.accent, type: [6, 4] },
           label: { formatter: `pole at ${pole.toFixed(4)}`, color: t.accent, position: 'insideEndTop', rotate: 90, offset: [0, 0] }, data: [{ xAxis: pole }] } }));
     return { legend: legend(), xAxis: aoAxis(), yAxis: axis('τ', { min: -1, max: 1.5, nameGap: 36 }), series };

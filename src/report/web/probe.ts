@@ -41,7 +41,7 @@ export function makeProbe(planes: Planes, picture: () => Picture): Probe {
     element.dataset.x = String(at[0] * planes.stride);
     element.dataset.y = String(at[1] * planes.stride);
     const irradiance = planes.irradiance.map((plane) => plane[texel] * planes.irradianceStep);
-    facts.textContent = `α ${ao.toFixed(4)}` + irradiance.slice(0, 3).map((value, b) => `   ${bounceName(b)}/π ${value.toFixed(4)}`).join('');
+    facts.textContent = `α ${ao.toFixed(4)}` + irradiance.slice(0, 2).map((value, b) => `   ${bounceName(b)}/π ${value.toFixed(4)}`).join('');
     rows.forEach((row, i) => {
       cells[i].forEach((cell, c) => (cell.textContent = row ? (i === 3 && row[c] >= 0 ? '+' : '') + row[c].toFixed(4).replace('-', '−') : '–'));
       swatches[i].style.background = row && i < 3 ? swatchColor(row, albedo) : 'transparent';

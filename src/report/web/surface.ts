@@ -83,15 +83,18 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number,
   const t = theme();
   const last = bounces - 1;
   const top = Math.max(...points.map((point) => Math.max(...point.mean)));
-  const scale = camera.zoom * Math.min(width * 0.62, height * 0.86);
   const [cosTurn, sinTurn] = [Math.cos(camera.turn), Math.sin(camera.turn)];
   const [cosTilt, sinTilt] = [Math.cos(camera.tilt), Math.sin(camera.tilt)];
+  // The box and its labels fill the canvas.
+  const boxWidth = Math.abs(cosTurn) + Math.abs(sinTurn);
+  const boxHeight = kHeight * cosTilt + boxWidth * sinTilt;
+  const scale = camera.zoom * Math.min((width - 120 * density) / boxWidth, (height - 92 * density) / boxHeight);
 
   // Bounce 0..last, α 0..1, E/π 0..top, seen in parallel.
   const project = (bounce: number, ao: number, value: number): Projected => {
     const x = bounce / last - 0.5, y = ao - 0.5, z = (value / top - 0.5) * kHeight;
     const across = x * cosTurn - y * sinTurn, away = x * sinTurn + y * cosTurn;
-    return [width / 2 + across * scale, height / 2 - (z * cosTilt + away * sinTilt) * scale, away * cosTilt - z * sinTilt];
+    return [width / 2 + across * scale, height / 2 - 14 * density - (z * cosTilt + away * sinTilt) * scale, away * cosTilt - z * sinTilt];
   };
   const stroke = (from: Projected, to: Projected, color: string, thickness = 1) => {
     context.strokeStyle = color;
@@ -151,13 +154,15 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number,
     context.lineWidth = 0.6 * density;
     context.stroke();
   }
+  // Numbers and names outside the box, to the side where their edge runs.
+  const side = project(last / 2, nearAo, 0)[0] < project(nearBounce, 0.5, 0)[0] ? -1 : 1;
   for (let i = 0; i <= 5; ++i) {
     const bounce = (i / 5) * last, ao = i / 5;
-    write(String(Math.round(bounce)), project(bounce, nearAo, 0), 0, 14, t.faint);
-    write(ao.toFixed(1), project(nearBounce, ao, 0), 0, 14, t.faint);
+    write(String(Math.round(bounce)), project(bounce, nearAo, 0), side * 9, 14, t.faint);
+    write(ao.toFixed(1), project(nearBounce, ao, 0), -side * 11, 14, t.faint);
     if (i > 0) write(((i / 5) * top).toFixed(2), project(nearBounce, farAo, (i / 5) * top), sinTurn > 0 ? -22 : 22, 0, t.faint);
   }
-  write('bounce', project(last / 2, nearAo, 0), 0, 36, t.ink, true);
-  write('AO α', project(nearBounce, 0.5, 0), 0, 36, t.ink, true);
+  write('bounce', project(last / 2, nearAo, 0), side * 44, 34, t.ink, true);
+  write('AO α', project(nearBounce, 0.5, 0), -side * 44, 34, t.ink, true);
   write('E/π', project(nearBounce, farAo, top), 0, -16, t.ink, true);
 }

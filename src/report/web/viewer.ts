@@ -31,6 +31,8 @@ export interface Renderer {
   draw(picture: Picture): void;
 }
 
+const kWindowShare = 0.82;
+const kLeastSide = 240; // pixels
 const kSmallestTexelsPerPixel = 1 / 64;
 const kPresets: [string, Rgb][] = [
   ['brick', [0.62, 0.28, 0.2]],
@@ -48,6 +50,8 @@ export async function showViewer(): Promise<void> {
   const host = place('see');
   const status = h('p', { class: 'loading', role: 'status' }, 'Unpacking the bake …');
   host.append(status);
+  // The page is painted before the work begins.
+  await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
   const planes = await readPlanes(bake.planes, (share) => {
     status.textContent = `Unpacking the bake … ${Math.round(100 * share)} %`;
   });
@@ -97,12 +101,11 @@ class Viewer {
     this.stage.dataset.renderer = this.renderer.name;
     this.listen();
     this.fit();
-    new ResizeObserver(() => this.fit()).observe(this.stage);
+    new ResizeObserver(() => this.fit()).observe(this.stage.parentElement!);
     onModelChange(() => {
       this.picture.model = currentModel();
       this.redraw();
     });
-    // For scripts and tests: the picture can be asked and set.
     this.canvas.dataset.ready = 'yes';
   }
 
@@ -139,11 +142,14 @@ class Viewer {
   // The whole bake in the stage.
   private fit(): void {
     const { width, height } = this.planes;
-    const cssWidth = this.stage.clientWidth;
-    const cssHeight = Math.max(1, Math.round(Math.min((cssWidth * height) / width, 0.82 * innerHeight)));
+    const room = (this.stage.parentElement as HTMLElement).clientWidth;
+    if (room === 0) return;
+    // As wide as there is room, but no higher than the window; a strip of a bake keeps some height.
+    const cssWidth = Math.round(Math.max(Math.min(room, (kWindowShare * innerHeight * width) / height), Math.min(room, kLeastSide)));
+    const cssHeight = Math.round(Math.max(Math.min((cssWidth * height) / width, kWindowShare * innerHeight), kLeastSide / 4));
     const density = Math.min(devicePixelRatio, 2);
-    const sameSize = this.canvas.width === Math.round(cssWidth * density) && this.canvas.style.height === `${cssHeight}px`;
-    if (sameSize || cssWidth === 0) return;
+    if (this.canvas.width === Math.round(cssWidth * density) && this.canvas.height === Math.round(cssHeight * density)) return;
+    this.stage.style.width = `${cssWidth}px`;
     this.canvas.width = Math.round(cssWidth * density);
     this.canvas.height = Math.round(cssHeight * density);
     this.canvas.style.height = `${cssHeight}px`;
@@ -314,10 +320,10 @@ class Viewer {
   }
 
   private slider(label: string, range: [number, number, number], value: number, text: (value: number) => string,
-                 change: (value: number) => void, name: string): HTMLElement {
+                 change: (value: number) => void, name: string, spoken = label): HTMLElement {
     const [min, max, step] = range;
     const output = h('output', {}, text(value));
-    const input = h('input', { type: 'range', min, max, step, value, name, 'aria-label': label });
+    const input = h('input', { type: 'range', min, max, step, value, name, 'aria-label': spoken });
     input.addEventListener('input', () => {
       output.textContent = text(Number(input.value));
       input.setAttribute('aria-valuetext', output.textContent);
@@ -360,13 +366,13 @@ class Viewer {
       this.set({ albedo });
     };
     const sliders = ['Red', 'Green', 'Blue'].map((name, c) => {
-      const element = this.slider(`${name} albedo`, [0, 1, 0.01], this.picture.albedo[c], (value) => value.toFixed(2),
+      const element = this.slider(name, [0, 1, 0.01], this.picture.albedo[c], (value) => value.toFixed(2),
         (value) => {
           const albedo: Rgb = [...this.picture.albedo];
           if (linked) albedo.fill(value);
           else albedo[c] = value;
           apply(albedo);
-        }, name.toLowerCase());
+        }, name.toLowerCase(), `${name.toLowerCase()} albedo`);
       inputs.push(element.querySelector('input')!);
       return element;
     });
@@ -400,7 +406,7 @@ class Viewer {
   private toolbar(): HTMLElement {
     const zoomText = h('output', { class: 'zoom' });
     this.readout.set('zoom', () => {
-      zoomText.textContent = `${number((devicePixelRatio * 1) / this.picture.texelsPerPixel / Math.min(devicePixelRatio, 2), 3)} px a texel`;
+      zoomText.textContent = `${number(1 / this.picture.texelsPerPixel / Math.min(devicePixelRatio, 2), 3)} px a texel`;
     });
     const button = (text: string, label: string, onclick: () => void) =>
       h('button', { type: 'button', 'aria-label': label, title: label, onclick }, text);
