@@ -25,7 +25,7 @@ class Report : public CliTest {
 
   // A small bake and all that `run` makes of it.
   void bake(const std::string& folder, const std::string& options = "") {
-    if (!std::filesystem::exists(folder_ / "map.exr")) write_map("map.exr", SyntheticKind::bricks, 24, 20);
+    if (!std::filesystem::exists(folder_ / "map.exr")) write_map("map.exr", SyntheticKind::kBricks, 24, 20);
     const CommandResult result = run(fmt::format("run map.exr -o {} --rays 64 {}", folder, options));
     ASSERT_LE(result.exit_code, 1) << result.standard_error;
   }

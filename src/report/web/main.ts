@@ -1,4 +1,4 @@
-// The page, from top to bottom. The picture comes last: it waits for the bake's planes, which stand at the file's end.
+// The page. The picture comes last: it is the most work.
 
 import { showChecks, showSettings } from './checks';
 import { showCurves } from './curves';
@@ -12,13 +12,13 @@ import { showViewer } from './viewer';
 
 showTitle();
 showSummary();
-showCurves();
-showSurface();
-showModels();
-showSweep();
-showTrade();
-showShader();
-showChecks();
-showSettings();
-document.documentElement.dataset.plots = 'ready';
-document.addEventListener('DOMContentLoaded', () => void showViewer());
+document.addEventListener('DOMContentLoaded', () => {
+  // What is there is painted before the rest is made.
+  requestAnimationFrame(() =>
+    setTimeout(() => {
+      for (const show of [showCurves, showSurface, showModels, showSweep, showTrade, showShader, showChecks, showSettings]) show();
+      document.documentElement.dataset.plots = 'ready';
+      void showViewer();
+    }),
+  );
+});

@@ -29,6 +29,7 @@ export function makeProbe(planes: Planes, picture: () => Picture): Probe {
       h('tbody', {}, kRows.map((name, i) => h('tr', { 'data-row': name }, h('th', { scope: 'row' }, swatches[i], name), cells[i])))),
     bars);
 
+  let barsOf = -1; // the texel of the bars
   const update = () => {
     const { albedo, model, lastBounce } = picture();
     const texel = at[1] * planes.width + at[0];
@@ -46,7 +47,8 @@ export function makeProbe(planes: Planes, picture: () => Picture): Probe {
       cells[i].forEach((cell, c) => (cell.textContent = row ? (i === 3 && row[c] >= 0 ? '+' : '') + row[c].toFixed(4).replace('-', '−') : '–'));
       swatches[i].style.background = row && i < 3 ? swatchColor(row, albedo) : 'transparent';
     });
-    drawBars(bars, irradiance);
+    if (barsOf !== texel) drawBars(bars, irradiance);
+    barsOf = texel;
   };
   update();
   return {

@@ -50,8 +50,6 @@ export async function showViewer(): Promise<void> {
   const host = place('see');
   const status = h('p', { class: 'loading', role: 'status' }, 'Unpacking the bake …');
   host.append(status);
-  // The page is painted before the work begins.
-  await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
   const planes = await readPlanes(bake.planes, (share) => {
     status.textContent = `Unpacking the bake … ${Math.round(100 * share)} %`;
   });

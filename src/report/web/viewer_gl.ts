@@ -3,7 +3,7 @@
 import type { Model } from './model';
 import type { Planes } from './planes';
 import { kViews, type Picture, type Renderer } from './viewer';
-import { fragmentShader, kVertexShader } from './viewer_shader';
+import { kShowShader, kVertexShader, lightShader } from './viewer_shader';
 
 // null where there is no WebGL2, or the planes do not fit into a texture.
 export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Renderer | null {
@@ -18,40 +18,80 @@ export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Rende
   )
     return null;
 
-  let programs = new Map<Model, Program>();
+  let lights = new Map<Model, Program>();
+  let show: Program, target: WebGLFramebuffer;
+  let settings = ''; // of the texels as they are lit now
   const restore = () => {
-    programs = new Map();
+    lights = new Map();
+    settings = '';
+    show = makeProgram(gl, kShowShader);
     uploadCorners(gl);
     uploadPlanes(gl, planes, layers);
+    target = makeTarget(gl, planes.width, planes.height);
   };
   restore();
   canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
   canvas.addEventListener('webglcontextrestored', restore);
 
+  const light = (picture: Picture) => {
+    if (!lights.has(picture.model)) lights.set(picture.model, makeProgram(gl, lightShader(picture.model.data.shader.glsl)));
+    const { program, at } = lights.get(picture.model)!;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.viewport(0, 0, planes.width, planes.height);
+    gl.useProgram(program);
+    gl.uniform1i(at('planes'), 0);
+    gl.uniform1f(at('ao_step'), planes.aoStep);
+    gl.uniform1f(at('irradiance_step'), planes.irradianceStep);
+    gl.uniform1i(at('layers'), layers);
+    gl.uniform1i(at('last_bounce'), picture.lastBounce);
+    gl.uniform3f(at('albedo'), ...picture.albedo);
+    gl.uniform1f(at('gain'), 2 ** picture.exposure);
+    gl.uniform1i(at('view'), kViews.indexOf(picture.view));
+    gl.uniform1i(at('as_color'), picture.asColor ? 1 : 0);
+    gl.uniform2f(at('dividers'), ...borders(picture));
+    gl.uniform1f(at('range'), picture.range);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  };
+
   return {
     name: 'WebGL2',
-    draw(picture: Picture) {
+    draw(picture) {
       if (gl.isContextLost()) return;
-      if (!programs.has(picture.model)) programs.set(picture.model, makeProgram(gl, picture.model.data.shader.glsl));
-      const { program, at } = programs.get(picture.model)!;
+      const wanted = JSON.stringify([
+        picture.model.data.id, picture.view, picture.albedo, picture.exposure, picture.asColor, picture.lastBounce,
+        picture.range, picture.view === 'compare' && borders(picture),
+      ]);
+      if (wanted !== settings) light(picture);
+      settings = wanted;
       gl.viewport(0, 0, canvas.width, canvas.height);
-      gl.useProgram(program);
-      gl.uniform2f(at('canvas_size'), canvas.width, canvas.height);
-      gl.uniform2f(at('origin'), picture.originX, picture.originY);
-      gl.uniform1f(at('texels_per_pixel'), picture.texelsPerPixel);
-      gl.uniform1f(at('ao_step'), planes.aoStep);
-      gl.uniform1f(at('irradiance_step'), planes.irradianceStep);
-      gl.uniform1i(at('layers'), layers);
-      gl.uniform1i(at('last_bounce'), picture.lastBounce);
-      gl.uniform3f(at('albedo'), ...picture.albedo);
-      gl.uniform1f(at('gain'), 2 ** picture.exposure);
-      gl.uniform1i(at('view'), kViews.indexOf(picture.view));
-      gl.uniform1i(at('as_color'), picture.asColor ? 1 : 0);
-      gl.uniform2f(at('dividers'), ...picture.dividers);
-      gl.uniform1f(at('range'), picture.range);
+      gl.useProgram(show.program);
+      gl.uniform1i(show.at('lit'), 1);
+      gl.uniform1f(show.at('canvas_height'), canvas.height);
+      gl.uniform2f(show.at('origin'), picture.originX, picture.originY);
+      gl.uniform1f(show.at('texels_per_pixel'), picture.texelsPerPixel);
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     },
   };
+}
+
+// The dividers on the bake.
+function borders(picture: Picture): [number, number] {
+  return picture.dividers.map((pixel) => picture.originX + pixel * picture.texelsPerPixel) as [number, number];
+}
+
+// What the texels are lit into; stays bound as texture 1.
+function makeTarget(gl: WebGL2RenderingContext, width: number, height: number): WebGLFramebuffer {
+  gl.activeTexture(gl.TEXTURE1);
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, width, height);
+  for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, side, gl.NEAREST);
+  const target = gl.createFramebuffer()!;
+  gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  return target;
 }
 
 interface Program {
@@ -59,11 +99,11 @@ interface Program {
   at(uniform: string): WebGLUniformLocation | null;
 }
 
-function makeProgram(gl: WebGL2RenderingContext, model: string): Program {
+function makeProgram(gl: WebGL2RenderingContext, fragment: string): Program {
   const program = gl.createProgram()!;
   for (const [type, source] of [
     [gl.VERTEX_SHADER, kVertexShader],
-    [gl.FRAGMENT_SHADER, fragmentShader(model)],
+    [gl.FRAGMENT_SHADER, fragment],
   ] as const) {
     const shader = gl.createShader(type)!;
     gl.shaderSource(shader, source);
@@ -92,8 +132,10 @@ function uploadCorners(gl: WebGL2RenderingContext): void {
   gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 0, 0);
 }
 
+// As texture 0.
 function uploadPlanes(gl: WebGL2RenderingContext, planes: Planes, layers: number): void {
   const { width, height } = planes;
+  gl.activeTexture(gl.TEXTURE0);
   gl.bindTexture(gl.TEXTURE_2D_ARRAY, gl.createTexture());
   gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
   gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA16UI, width, height, layers);

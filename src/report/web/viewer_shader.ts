@@ -1,20 +1,34 @@
-// The picture's fragment shader. The model in it is the very text that `hemibake export --to glsl` writes.
+// The picture's shaders: one lights every texel of the bake, one shows them on the canvas. The model is the very text
+// that `hemibake export --to glsl` writes.
 
 export const kVertexShader = `#version 300 es
 in vec2 corner;
 void main() { gl_Position = vec4(corner, 0.0, 1.0); }
 `;
 
+// Lit texels, placed and scaled.
+export const kShowShader = `#version 300 es
+precision highp float;
+uniform sampler2D lit;
+uniform float canvas_height;
+uniform vec2 origin;            // texel at the canvas' upper left corner
+uniform float texels_per_pixel;
+out vec4 color;
+void main() {
+  vec2 pixel = vec2(gl_FragCoord.x, canvas_height - gl_FragCoord.y);
+  ivec2 texel = ivec2(floor(origin + pixel * texels_per_pixel));
+  bool outside = any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, textureSize(lit, 0)));
+  color = outside ? vec4(0.0) : texelFetch(lit, texel, 0);
+}
+`;
+
 // Four planes a layer: α, E₀, E₁, E₂; E₃, … Integers, so that a texel is what the bake says and nothing between two.
-export function fragmentShader(model: string): string {
+export function lightShader(model: string): string {
   return `#version 300 es
 precision highp float;
 precision highp int;
 precision highp usampler2DArray;
 uniform usampler2DArray planes;
-uniform vec2 canvas_size;
-uniform vec2 origin;            // texel at the canvas' upper left corner
-uniform float texels_per_pixel;
 uniform float ao_step;
 uniform float irradiance_step;  // of E/pi
 uniform int layers;
@@ -23,7 +37,7 @@ uniform vec3 albedo;
 uniform float gain;
 uniform int view;               // kViews in viewer.ts
 uniform int as_color;           // 1: albedo times irradiance
-uniform vec2 dividers;          // pixels
+uniform vec2 dividers;          // texels
 uniform float range;            // largest difference shown
 out vec4 color;
 
@@ -66,17 +80,11 @@ vec3 signed_color(float difference) {
 }
 
 void main() {
-  vec2 pixel = vec2(gl_FragCoord.x, canvas_size.y - gl_FragCoord.y);
-  ivec2 texel = ivec2(floor(origin + pixel * texels_per_pixel));
-  ivec2 size = textureSize(planes, 0).xy;
-  if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size))) {
-    color = vec4(0.0);
-    return;
-  }
+  ivec2 texel = ivec2(gl_FragCoord.xy);
   float ao = float(texelFetch(planes, ivec3(texel, 0), 0).x) * ao_step;
   vec3 shown = as_color == 1 ? albedo : vec3(1.0);
   int what = view;
-  if (view == 0) what = pixel.x < dividers.x ? 1 : pixel.x < dividers.y ? 2 : 3;
+  if (view == 0) what = gl_FragCoord.x < dividers.x ? 1 : gl_FragCoord.x < dividers.y ? 2 : 3;
   if (what == 1) color = vec4(encode(shown * ao), 1.0);
   else if (what == 2) color = vec4(encode(shown * multi_bounce_irradiance(ao, albedo)), 1.0);
   else if (what == 3) color = vec4(encode(shown * traced_light(texel)), 1.0);

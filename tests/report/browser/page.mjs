@@ -2,16 +2,16 @@
 
 import { createRequire } from 'node:module';
 import { pathToFileURL } from 'node:url';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 
 export const kChromium = '/usr/bin/chromium';
 
-// packages: the folder with node_modules. SwiftShader stands for a graphics card.
+// packages: the folder with node_modules. Without a graphics card Chromium draws in software (SwiftShader).
 export async function launch(packages) {
-  const { chromium } = createRequire(join(packages, 'package.json'))('playwright-core');
+  const { chromium } = createRequire(join(resolve(packages), 'package.json'))('playwright-core');
   return chromium.launch({
     executablePath: kChromium,
-    args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
+    args: ['--no-sandbox', '--enable-unsafe-swiftshader'],
   });
 }
 
