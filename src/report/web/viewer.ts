@@ -8,9 +8,8 @@ import { makeProbe, type Probe } from './probe';
 import { makeCanvasRenderer } from './viewer_canvas';
 import { makeGlRenderer } from './viewer_gl';
 
-// In the order of the shader's numbers.
-export const kViews = ['compare', 'off', 'model', 'truth', 'bounce', 'difference', 'difference off'] as const;
-export type View = (typeof kViews)[number];
+export type Panel = 'off' | 'model' | 'truth' | 'bounce' | 'difference' | 'difference off';
+export type View = Panel | 'compare';
 
 export interface Picture {
   model: Model;
@@ -24,6 +23,14 @@ export interface Picture {
   originY: number;
   texelsPerPixel: number;
   dividers: [number, number]; // canvas pixels
+}
+
+// What is shown in which columns of the bake, first and one after the last.
+export function panelsOf(picture: Picture, width: number): [Panel, number, number][] {
+  if (picture.view !== 'compare') return [[picture.view, 0, width]];
+  const [a, b] = picture.dividers.map((pixel) =>
+    Math.min(Math.max(Math.round(picture.originX + pixel * picture.texelsPerPixel), 0), width));
+  return [['off', 0, a], ['model', a, b], ['truth', b, width]];
 }
 
 export interface Renderer {

@@ -2,7 +2,7 @@
 
 import type { Rgb } from './data';
 import { aoOf, truthOf, type Planes } from './planes';
-import type { Picture, Renderer, View } from './viewer';
+import { panelsOf, type Panel, type Picture, type Renderer } from './viewer';
 
 const kLuminance: Rgb = [0.2126, 0.7152, 0.0722];
 
@@ -11,8 +11,6 @@ const kEncoded = Uint8ClampedArray.from({ length: 4096 }, (_, i) => {
   const x = i / 4095;
   return Math.round(255 * (x <= 0.0031308 ? x * 12.92 : 1.055 * x ** (1 / 2.4) - 0.055));
 });
-
-type Panel = Exclude<View, 'compare'>;
 
 export function makeCanvasRenderer(canvas: HTMLCanvasElement, planes: Planes): Renderer {
   const context = canvas.getContext('2d')!;
@@ -42,14 +40,10 @@ export function makeCanvasRenderer(canvas: HTMLCanvasElement, planes: Planes): R
     draw(picture) {
       context.clearRect(0, 0, canvas.width, canvas.height);
       context.imageSmoothingEnabled = false;
-      const [a, b] = picture.dividers;
-      const pieces: [Panel, number, number][] =
-        picture.view === 'compare'
-          ? [['off', 0, a], ['model', a, b], ['truth', b, canvas.width]]
-          : [[picture.view, 0, canvas.width]];
       const scale = 1 / picture.texelsPerPixel;
-      for (const [panel, from, to] of pieces) {
-        if (to <= from) continue;
+      for (const [panel, first, last] of panelsOf(picture, planes.width)) {
+        if (last <= first) continue;
+        const from = (first - picture.originX) * scale, to = (last - picture.originX) * scale;
         context.save();
         context.beginPath();
         context.rect(from, 0, to - from, canvas.height);

@@ -1,8 +1,7 @@
 // The picture by WebGL2.
 
-import type { Model } from './model';
 import type { Planes } from './planes';
-import { kViews, type Picture, type Renderer } from './viewer';
+import { panelsOf, type Panel, type Picture, type Renderer } from './viewer';
 import { kShowShader, kVertexShader, lightShader } from './viewer_shader';
 
 // null where there is no WebGL2, or the planes do not fit into a texture.
@@ -18,7 +17,7 @@ export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Rende
   )
     return null;
 
-  let lights = new Map<Model, Program>();
+  let lights = new Map<string, Program>(); // by model and panel
   let show: Program, target: WebGLFramebuffer;
   let settings = ''; // of the texels as they are lit now
   const restore = () => {
@@ -33,24 +32,31 @@ export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Rende
   canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
   canvas.addEventListener('webglcontextrestored', restore);
 
-  const light = (picture: Picture) => {
-    if (!lights.has(picture.model)) lights.set(picture.model, makeProgram(gl, lightShader(picture.model.data.shader.glsl)));
-    const { program, at } = lights.get(picture.model)!;
-    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
-    gl.viewport(0, 0, planes.width, planes.height);
+  // The columns from..to − 1 of the bake.
+  const light = (picture: Picture, panel: Panel, from: number, to: number) => {
+    if (to <= from) return;
+    const key = `${picture.model.data.id} ${panel}`;
+    if (!lights.has(key)) lights.set(key, makeProgram(gl, lightShader(picture.model.data.shader.glsl, panel)));
+    const { program, at } = lights.get(key)!;
     gl.useProgram(program);
     gl.uniform1i(at('planes'), 0);
     gl.uniform1f(at('ao_step'), planes.aoStep);
     gl.uniform1f(at('irradiance_step'), planes.irradianceStep);
-    gl.uniform1i(at('layers'), layers);
     gl.uniform1i(at('last_bounce'), picture.lastBounce);
-    gl.uniform3f(at('albedo'), ...picture.albedo);
+    gl.uniform3fv(at('albedo'), picture.albedo);
+    gl.uniform3fv(at('shown'), picture.asColor ? picture.albedo : [1, 1, 1]);
     gl.uniform1f(at('gain'), 2 ** picture.exposure);
-    gl.uniform1i(at('view'), kViews.indexOf(picture.view));
-    gl.uniform1i(at('as_color'), picture.asColor ? 1 : 0);
-    gl.uniform2f(at('dividers'), ...borders(picture));
     gl.uniform1f(at('range'), picture.range);
+    gl.scissor(from, 0, to - from, planes.height);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
+  };
+
+  const lightAll = (picture: Picture) => {
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    gl.viewport(0, 0, planes.width, planes.height);
+    gl.enable(gl.SCISSOR_TEST);
+    for (const [panel, from, to] of panelsOf(picture, planes.width)) light(picture, panel, from, to);
+    gl.disable(gl.SCISSOR_TEST);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   };
 
@@ -59,10 +65,10 @@ export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Rende
     draw(picture) {
       if (gl.isContextLost()) return;
       const wanted = JSON.stringify([
-        picture.model.data.id, picture.view, picture.albedo, picture.exposure, picture.asColor, picture.lastBounce,
-        picture.range, picture.view === 'compare' && borders(picture),
+        picture.model.data.id, picture.albedo, picture.exposure, picture.asColor, picture.lastBounce, picture.range,
+        panelsOf(picture, planes.width),
       ]);
-      if (wanted !== settings) light(picture);
+      if (wanted !== settings) lightAll(picture);
       settings = wanted;
       gl.viewport(0, 0, canvas.width, canvas.height);
       gl.useProgram(show.program);
@@ -73,11 +79,6 @@ export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Rende
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     },
   };
-}
-
-// The dividers on the bake.
-function borders(picture: Picture): [number, number] {
-  return picture.dividers.map((pixel) => picture.originX + pixel * picture.texelsPerPixel) as [number, number];
 }
 
 // What the texels are lit into; stays bound as texture 1.
