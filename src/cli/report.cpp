@@ -41,7 +41,8 @@ int run_report(ReportOptions options) {
       name_file(options.folder / "bake.exr", [&] { return pack_planes(bake, options.image_size); });
   const std::vector<ReportModel> models = report_models(folder);
   const Rgb albedo = {options.albedo[0], options.albedo[1], options.albedo[2]};
-  const std::string page = fill_page(page_template(), report_data(folder, models, planes, albedo), planes);
+  const std::string page =
+      fill_page(page_template(), report_data(folder, models, planes, albedo), planes, folder.pictures);
   OutputFile file(options.output);
   file.write(page);
   file.commit();
@@ -65,10 +66,11 @@ int run_report(ReportOptions options) {
 
 CommandBody setup_report(CLI::App& app) {
   auto options = std::make_shared<ReportOptions>();
-  app.add_option("DIR", options->folder,
-                 "folder of 'hemibake run': bake.exr, curves.csv, fit.json, check.json, as far as they are "
-                 "there; also run.json (what 'run --json' printed), trade.json, and the curves of "
-                 "scripts/sweep")
+  app.add_option(
+         "DIR", options->folder,
+         "folder of 'hemibake run': bake.exr, curves.csv, fit.json, check.json, as far as they are "
+         "there; also run.json (what 'run --json' printed), trade.json, the curves of "
+         "scripts/sweep, and the pictures of 'hemibake render' (render.json there or in DIR/pictures)")
       ->required();
   app.add_option("-o,--output", options->output, "the page to write, HTML; default: DIR/report.html");
   app.add_option("--albedo", options->albedo, "the albedo the image opens with: R,G,B, linear")

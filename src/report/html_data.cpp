@@ -186,6 +186,9 @@ nlohmann::ordered_json report_data(const ReportFolder& folder, std::span<const R
   json["check"] = folder.check;
   json["run"] = folder.run;
   json["trade"] = folder.trade;
+  json["pictures"] = Json::array();
+  for (const ReportPicture& picture : folder.pictures)
+    json["pictures"].push_back({{"name", picture.name}, {"here", !picture.png.empty()}});
   json["sweep"] = Json::array();
   for (const SweepCurves& step : folder.sweep)
     json["sweep"].push_back(

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <charconv>
+#include <fstream>
+#include <sstream>
 
 #include "core/error.h"
 #include "io/curves_file.h"
 #include "io/output_file.h"
+#include "io/provenance.h"
 #include "io/table_io.h"
 
 namespace hemibake {
@@ -43,6 +46,38 @@ void read_sweep(const fs::path& folder, std::vector<SweepCurves>& sweep) {
       sweep.push_back({*amplitude, read_curves(entry.path())});
 }
 
+// The page of a 512 x 512 bake with 20 bounces has 8 MiB and is to stay below 12; as text a third is added.
+constexpr size_t kPictureBytes = 3000000;
+
+std::string read_bytes(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  if (file && file.peek() != std::ifstream::traits_type::eof()) bytes << file.rdbuf();
+  if (!file) throw InputError(fmt::format("{}: could not be read, expected a picture", path.string()));
+  return bytes.str();
+}
+
+// Figures, which have no EXR of their own and show several pictures side by side, come first.
+void read_pictures(const fs::path& folder, std::vector<ReportPicture>& pictures) {
+  const nlohmann::ordered_json record = read_if_there(folder / "render.json", "pictures");
+  if (record.is_null()) return;
+  size_t room = kPictureBytes;
+  for (const bool figures : {true, false})
+    for (const nlohmann::ordered_json& entry : record["pictures"]) {
+      if (!entry.is_object() || !entry.contains("files") || !entry["files"].is_array()) continue;
+      if ((entry["files"].size() == 1) != figures) continue;
+      for (const nlohmann::ordered_json& name : entry["files"]) {
+        if (!name.is_string()) continue;
+        // A name, wherever the list came from: never a way out of the folder.
+        const fs::path file = folder / fs::path(name.get<std::string>()).filename();
+        if (lower_case_extension(file) != ".png" || !fs::is_regular_file(file)) continue;
+        std::string png = fs::file_size(file) <= room ? read_bytes(file) : std::string();
+        room -= png.size();
+        pictures.push_back({valid_utf8(file.stem().string()), std::move(png)});
+      }
+    }
+}
+
 }  // namespace
 
 ReportFolder read_report_folder(const fs::path& path) {
@@ -59,6 +94,8 @@ ReportFolder read_report_folder(const fs::path& path) {
   folder.trade = read_if_there(path / "trade.json", "runs");
   read_sweep(path, folder.sweep);
   read_sweep(path / "sweep", folder.sweep);
+  read_pictures(path, folder.pictures);
+  read_pictures(path / "pictures", folder.pictures);
   std::ranges::sort(folder.sweep, {}, &SweepCurves::amplitude_m);
   if (!folder.bake && !folder.curves && !folder.fits && folder.check.is_null() && folder.trade.is_null() &&
       folder.sweep.empty())

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "curves/curves.h"
@@ -18,6 +19,12 @@ struct SweepCurves {
   Curves curves;
 };
 
+// A PNG that `hemibake render` wrote, by the name it has in render.json.
+struct ReportPicture {
+  std::string name;
+  std::string png;  // the file's bytes; empty where the page has no room for it
+};
+
 struct ReportFolder {
   std::filesystem::path path;
   std::optional<BakeFile> bake;    // bake.exr
@@ -27,6 +34,8 @@ struct ReportFolder {
   nlohmann::ordered_json run;      // run.json: what `hemibake run --json` printed; or null
   nlohmann::ordered_json trade;    // trade.json; or null
   std::vector<SweepCurves> sweep;  // AMPLITUDE.csv in the folder or in its folder `sweep`, in rising order
+  std::vector<ReportPicture>
+      pictures;  // of render.json in the folder or in its folder `pictures`, figures first
 };
 
 // Throws InputError where `path` is not a folder, has none of these files, or one of them cannot be read.

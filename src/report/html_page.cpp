@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "io/compress.h"
+
 namespace hemibake {
 namespace {
 
@@ -52,7 +54,8 @@ std::string_view take_until(std::string_view page, std::string_view place, size_
 
 }  // namespace
 
-std::string fill_page(std::string_view page, const nlohmann::ordered_json& data, const PackedPlanes& planes) {
+std::string fill_page(std::string_view page, const nlohmann::ordered_json& data, const PackedPlanes& planes,
+                      std::span<const ReportPicture> pictures) {
   size_t at = 0;
   std::string filled(take_until(page, kTitlePlace, at));
   filled += escape_html(data.at("title").get<std::string>());
@@ -62,6 +65,10 @@ std::string fill_page(std::string_view page, const nlohmann::ordered_json& data,
   for (const PackedPlane& plane : planes.planes)
     filled += fmt::format("<script class=\"plane\" type=\"text/plain\" data-name=\"{}\">{}</script>\n",
                           plane.name, plane.base64);
+  for (size_t i = 0; i < pictures.size(); ++i)
+    if (!pictures[i].png.empty())
+      filled += fmt::format("<script class=\"picture\" type=\"text/plain\" data-index=\"{}\">{}</script>\n",
+                            i, base64(pictures[i].png));
   filled += page.substr(at);
   return filled;
 }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 
+#include "report/html_folder.h"
 #include "report/html_planes.h"
 
 namespace hemibake {
@@ -13,6 +15,7 @@ namespace hemibake {
 std::string_view page_template();
 
 // The whole page. data: what report_data gave.
-std::string fill_page(std::string_view page, const nlohmann::ordered_json& data, const PackedPlanes& planes);
+std::string fill_page(std::string_view page, const nlohmann::ordered_json& data, const PackedPlanes& planes,
+                      std::span<const ReportPicture> pictures);
 
 }  // namespace hemibake

@@ -100,6 +100,22 @@ TEST_F(Report, FindsTheSweep) {
   EXPECT_THAT(page("out"), Not(HasSubstr("\"amplitude_m\":-3")));
 }
 
+TEST_F(Report, ShowsPicturesOfTheFolderOnly) {
+  bake("out");
+  std::filesystem::create_directory(folder_ / "out/pictures");
+  std::ofstream(folder_ / "out/pictures/wall.png") << "PNG";
+  std::ofstream(folder_ / "out/secret.png") << "SECRET";
+  std::ofstream(folder_ / "out/pictures/large.png") << std::string(3000001, 'x');
+  std::ofstream(folder_ / "out/pictures/render.json")
+      << R"({"pictures": [{"name": "wall", "files": ["wall.exr", "wall.png"]}, {"files": ["../secret.png"]},
+             {"files": ["large.png"]}, {"files": ["gone.png"]}, 7]})";
+  run_well("report out");
+  EXPECT_THAT(
+      page("out"),
+      HasSubstr("\"pictures\":[{\"name\":\"large\",\"here\":false},{\"name\":\"wall\",\"here\":true}]"));
+  EXPECT_THAT(page("out"), HasSubstr("data-index=\"1\">UE5H</script>"));
+}
+
 TEST_F(Report, SmallerImage) {
   bake("out");
   const json said = run_json("report out --image-size 10");

@@ -15,7 +15,7 @@ using testing::Not;
 TEST(HtmlPage, DataStandInTheirPlaces) {
   PackedPlanes planes;
   planes.planes.push_back({"ao", 1, "QUJD"});
-  EXPECT_EQ(fill_page("a<!-- title -->b<!-- data -->c<!-- planes -->d", {{"title", "t"}}, planes),
+  EXPECT_EQ(fill_page("a<!-- title -->b<!-- data -->c<!-- planes -->d", {{"title", "t"}}, planes, {}),
             "atb<script id=\"data\" type=\"application/json\">{\"title\":\"t\"}</script>c"
             "<script class=\"plane\" type=\"text/plain\" data-name=\"ao\">QUJD</script>\nd");
 }
@@ -24,7 +24,7 @@ TEST(HtmlPage, DataStandInTheirPlaces) {
 TEST(HtmlPage, NamesCannotLeaveTheirPlaces) {
   const std::string name = "</script><script>alert(1)</script>&.png<!-- planes -->\xff";
   const std::string page =
-      fill_page("<title><!-- title --></title><!-- data -->|<!-- planes -->", {{"title", name}}, {});
+      fill_page("<title><!-- title --></title><!-- data -->|<!-- planes -->", {{"title", name}}, {}, {});
   EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
   EXPECT_THAT(page, HasSubstr("<title>&lt;/script>&lt;script>alert(1)&lt;/script>&amp;.png"));
   const size_t from = page.find('{'), to = page.rfind('}');
@@ -35,7 +35,7 @@ TEST(HtmlPage, NamesCannotLeaveTheirPlaces) {
 }
 
 TEST(HtmlPage, TemplateWithoutAPlaceIsABug) {
-  EXPECT_THROW(fill_page("<!-- title --><!-- planes -->", {{"title", "t"}}, {}), std::logic_error);
+  EXPECT_THROW(fill_page("<!-- title --><!-- planes -->", {{"title", "t"}}, {}, {}), std::logic_error);
 }
 
 // This build's own page: whole, and with nothing to fetch.

@@ -84,6 +84,7 @@ export interface Report {
   check: { passed: boolean; checks: Check[] } | null;
   run: Record<string, unknown> | null;
   trade: unknown;
+  pictures: { name: string; here: boolean }[];
   sweep: { amplitude_m: number; curves: Curves }[];
 }
 

@@ -3,6 +3,7 @@
 import { showChecks, showSettings } from './checks';
 import { showCurves } from './curves';
 import { showModels } from './models';
+import { showPictures } from './pictures';
 import { showShader } from './shader';
 import { showSummary, showTitle } from './summary';
 import { showSurface } from './surface';
@@ -16,7 +17,7 @@ document.addEventListener('DOMContentLoaded', () => {
   // What is there is painted before the rest is made.
   requestAnimationFrame(() =>
     setTimeout(() => {
-      for (const show of [showCurves, showSurface, showModels, showSweep, showTrade, showShader, showChecks, showSettings]) show();
+      for (const show of [showCurves, showSurface, showModels, showSweep, showTrade, showShader, showPictures, showChecks, showSettings]) show();
       document.documentElement.dataset.plots = 'ready';
       void showViewer();
     }),

@@ -7,7 +7,8 @@ import { join } from 'node:path';
 export const kAlbedo = [0.9, 0.6, 0.2];
 export const kOtherAlbedo = [0.35, 1, 0];
 
-export function makeBakes(hemibake, folder) {
+// pictures: a folder with bricks.png, which stands for one of 'hemibake render'.
+export function makeBakes(hemibake, folder, pictures) {
   // A map without an answer to fit is exit 1; the folder is whole all the same.
   const run = (...options) => {
     const result = spawnSync(hemibake, options, { cwd: folder, encoding: 'utf8' });
@@ -26,6 +27,8 @@ export function makeBakes(hemibake, folder) {
     run('curves', 'step.exr', '-o', join('whole', 'sweep', `${amplitude}.csv`));
   }
   writeFileSync(join(folder, 'whole', 'trade.json'), JSON.stringify(tradeStudy()));
+  copyFileSync(join(pictures, 'bricks.png'), join(folder, 'whole', 'wall_seen.png'));
+  writeFileSync(join(folder, 'whole', 'render.json'), JSON.stringify({ pictures: [{ name: 'wall_seen', files: ['wall_seen.png'] }] }));
 
   run('run', 'map.exr', '-o', 'no_bounces', '--rays', '32', '--bounces', '0');
   run('run', 'map.exr', '-o', 'one_bin', '--rays', '32', '--bins', '1');

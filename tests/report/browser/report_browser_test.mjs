@@ -6,8 +6,9 @@ import assert from 'node:assert/strict';
 import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
+import { dirname, join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
 
 import { kAlbedo, kOtherAlbedo, makeBakes } from './bakes.mjs';
 import { choose, encode, kChromium, launch, open, pixelOf, probeOf, setAlbedo, setSlider, settle, waitForPicture } from './page.mjs';
@@ -28,7 +29,7 @@ const folder = mkdtempSync(join(tmpdir(), 'hemibake-report-'));
 let browser, bakes;
 
 before(async () => {
-  bakes = makeBakes(hemibake, folder);
+  bakes = makeBakes(hemibake, folder, join(dirname(fileURLToPath(import.meta.url)), '../../../.readme'));
   browser = await launch(packages);
 });
 
@@ -182,6 +183,8 @@ test('all plots are drawn, in light, dark and print', async () => {
     // Bounces, sum, surface, direct light, albedos, tau, two of the sweep, the trade study.
     await expectPlots(page, 9);
     assert.equal(await page.locator('.missing').count(), 0);
+    await page.locator('#pictures img').scrollIntoViewIfNeeded();
+    await page.waitForFunction(() => document.querySelector('#pictures img').naturalWidth > 100);
     const pdf = await page.pdf();
     assert.ok(pdf.length > 50000, `${pdf.length} bytes of PDF`);
     assert.deepEqual(page.complaints, []);
