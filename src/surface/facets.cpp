@@ -32,6 +32,12 @@ std::array<glm::dvec3, 3> facet_positions_texels(const Surface& surface, uint32_
   return positions;
 }
 
+glm::dvec2 facet_point_texels(const Surface& surface, uint32_t facet, glm::dvec2 uv) {
+  // Corner 1 lies along x from corner 0, corner 2 along y.
+  const double sign = facet % 2 == 0 ? 1 : -1;
+  return glm::dvec2(facet_corners(surface, facet).texel[0]) + sign * uv;
+}
+
 glm::dvec3 facet_normal(const Surface& surface, uint32_t facet) {
   const auto p = facet_positions_texels(surface, facet);
   // The right-angled corner's legs run along x and y, so the plane's slopes are height differences along

@@ -34,9 +34,7 @@ class SliceTracer final : public Tracer {
  public:
   SliceTracer(const Surface& surface, const SliceOptions& options);
 
-  uint32_t patch_count() const override {
-    return options_.patches == Patches::kFacets ? facet_count(surface_) : surface_.texel_count();
-  }
+  const PatchSet& patches() const override { return patches_; }
   void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const override {
     trace_texels(texel, with_links, {&row, 1}, counts);
   }
@@ -62,6 +60,7 @@ class SliceTracer final : public Tracer {
 
   const Surface& surface_;
   SliceOptions options_;
+  PatchSet patches_;
   int turns_;
   double max_distance_texels_;
   SliceField field_;
@@ -72,6 +71,7 @@ class SliceTracer final : public Tracer {
 SliceTracer::SliceTracer(const Surface& surface, const SliceOptions& options)
     : surface_(surface),
       options_(options),
+      patches_(make_patches(surface, options.patches)),
       turns_(std::max(1, kPaths / options.azimuths)),
       max_distance_texels_(options.max_distance_m / surface.texel_size_m),
       field_(make_slice_field(surface)),

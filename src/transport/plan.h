@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "surface/surface.h"
+#include "surface/patches.h"
 #include "tracers/tracer.h"
 
 namespace hemibake {

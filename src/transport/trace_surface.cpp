@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "tracers/ray_options.h"
 
 namespace hemibake {
 namespace {
@@ -50,6 +51,15 @@ TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, 
   return total;
 }
 
+uint64_t rays_of_nodes(const PatchSet& patches, int rays_per_texel) {
+  uint64_t rays = 0;
+  for (uint32_t facet = 0; facet + 1 < patches.first.size(); ++facet) {
+    const int k = subdivision(patches, facet);
+    rays += uint64_t{node_count(k)} * static_cast<uint64_t>(rays_per_node(rays_per_texel, k));
+  }
+  return rays;
+}
+
 }  // namespace
 
 Visibility trace_surface(const Tracer& tracer, int width, int height, Patches patches, bool with_links) {
@@ -60,14 +70,16 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
   const uint32_t texels = static_cast<uint32_t>(seen.visible_fraction.size());
   const bool trace_patches = with_links && patches == Patches::kFacets;
 
+  const uint32_t patch_count = tracer.patches().count;
   // One row tells how many rays a receiver takes.
   Row first_row;
   TracerCounts first_counts;
   tracer.trace_texel(0, false, first_row, first_counts);
-  const uint64_t receivers = texels + uint64_t{trace_patches ? tracer.patch_count() : 0};
-  Progress progress("tracing", receivers * first_counts.rays, "ray");
+  uint64_t rays = texels * first_counts.rays;
+  if (trace_patches) rays += rays_of_nodes(tracer.patches(), static_cast<int>(first_counts.rays));
+  Progress progress("tracing", rays, "ray");
 
-  if (with_links) seen.gather = make_links(texels, tracer.patch_count());
+  if (with_links) seen.gather = make_links(texels, patch_count);
   seen.counts = trace_blocks(
       texels, with_links ? &seen.gather : nullptr, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
@@ -80,10 +92,10 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
       });
   if (!trace_patches) return seen;
 
-  seen.patches = make_links(tracer.patch_count(), tracer.patch_count());
-  seen.patch_direct_over_pi.resize(tracer.patch_count());
+  seen.patches = make_links(patch_count, patch_count);
+  seen.patch_direct_over_pi.resize(patch_count);
   const TracerCounts of_patches = trace_blocks(
-      tracer.patch_count(), &seen.patches, progress,
+      patch_count, &seen.patches, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_patches(first, true, rows, counts);
       },
