@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <span>
 #include <stdexcept>
 
 #include "core/constants.h"
@@ -27,11 +28,7 @@ constexpr uint32_t kNoFacet = 0xffffffff;
 
 // Hash streams, one per use.
 constexpr uint64_t kTexelRotation = 1, kNodeRotation = 2, kNodeShiftU = 3, kNodeShiftV = 4, kTexelChoice = 5,
-                   kNodeChoice = 6;
-
-// A node's rays start in a copy of its facet this much smaller than one of the k² triangles, at the node: a
-// point exactly on a corner belongs to all facets around it, and what it sees depends on whose it is.
-constexpr double kNodeSize = 0.1;
+                   kNodeChoice = 6, kNodeElevation = 7;
 
 // Steps of the golden ratio: any number of them is spread evenly over the unit interval.
 constexpr double kGoldenStep = 0.6180339887498949;
@@ -56,6 +53,11 @@ class EmbreeTracer final : public Tracer {
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
 
  private:
+  // What the nodes of facets cut alike share.
+  struct NodeRays {
+    std::vector<glm::vec2> azimuths;  // unit, tangent plane, one per ray
+    std::vector<glm::dvec2> points;   // in the unit square, one per ray
+  };
   struct FloatFrame {
     glm::vec3 tangent, bitangent, normal;
     glm::vec3 world_from_tangent(const glm::vec3& v) const {
@@ -63,6 +65,7 @@ class EmbreeTracer final : public Tracer {
     }
   };
 
+  static NodeRays make_node_rays(int rays);
   void build_scene();
   glm::vec3 texel_start(uint32_t texel) const;
   FloatFrame texel_frame(uint32_t texel) const;
@@ -73,7 +76,7 @@ class EmbreeTracer final : public Tracer {
                      uint32_t own_facet, SurfaceHit* hit) const;
   float length_in_block(float x, float y, const glm::vec3& direction) const;
   template <class StartOf>
-  void trace_rays(const std::vector<WeightedDirection>& rays, const FloatFrame& frame,
+  void trace_rays(std::span<const WeightedDirection> rays, const FloatFrame& frame,
                   const StartOf& start_of, uint32_t own_facet, double choice, bool with_links, Row& row,
                   TracerCounts& counts) const;
   void add_links(const SurfaceHit& hit, double weight, double choice, std::vector<Link>& links) const;
@@ -85,8 +88,7 @@ class EmbreeTracer final : public Tracer {
   RayOptions options_;
   PatchSet patches_;
   std::vector<WeightedDirection> texel_directions_;
-  std::vector<std::vector<WeightedDirection>> node_directions_;  // by the facet's subdivision, from 1
-  std::vector<glm::dvec2> node_points_;                          // in the unit square, one per ray
+  NodeRays coarse_rays_, fine_rays_;
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
   bool wrap_;
@@ -107,12 +109,9 @@ EmbreeTracer::EmbreeTracer(const Surface& surface, const RayOptions& options)
       options_(options),
       patches_(make_patches(surface, options.patches)),
       texel_directions_(make_directions(options.directions, options.rays, options.cone_degrees)),
+      coarse_rays_(make_node_rays(rays_per_node(options.rays, kCoarseSubdivision))),
+      fine_rays_(make_node_rays(rays_per_node(options.rays, kFineSubdivision))),
       wrap_(surface.edge == Edge::kWrap) {
-  for (int k = 1; k <= kMaxSubdivision; ++k)
-    node_directions_.push_back(make_directions(DirectionSet::kCosine, rays_per_node(options.rays, k), 180));
-  for (uint32_t i = 0; i < node_directions_[0].size(); ++i)
-    node_points_.emplace_back(radical_inverse(3, i), radical_inverse(5, i));
-
   const double range = height_range_m(surface) / surface.texel_size_m;
   top_texels_ = static_cast<float>(range);
   // A thousandth of a texel clears the rounding of the start; on a very low map the lift must not jump over
@@ -128,6 +127,16 @@ EmbreeTracer::EmbreeTracer(const Surface& surface, const RayOptions& options)
   const double smallest_block = std::min(block_width_, block_height_);
   cut_distance_texels_ = std::min(std::max(1e5 * range, 16 * smallest_block), 1e6 * smallest_block);
   build_scene();
+}
+
+EmbreeTracer::NodeRays EmbreeTracer::make_node_rays(int rays) {
+  NodeRays result;
+  for (uint32_t i = 0; i < static_cast<uint32_t>(rays); ++i) {
+    const double azimuth = 2 * kPi * radical_inverse(2, i);
+    result.azimuths.emplace_back(std::cos(azimuth), std::sin(azimuth));
+    result.points.emplace_back(radical_inverse(3, i), radical_inverse(5, i));
+  }
+  return result;
 }
 
 EmbreeTracer::~EmbreeTracer() {
@@ -321,7 +330,7 @@ void EmbreeTracer::add_links(const SurfaceHit& hit, double weight, double choice
 
 // start_of(i): where ray i starts, texels, already lifted. choice: in [0, 1), which node the first hit draws.
 template <class StartOf>
-void EmbreeTracer::trace_rays(const std::vector<WeightedDirection>& rays, const FloatFrame& frame,
+void EmbreeTracer::trace_rays(std::span<const WeightedDirection> rays, const FloatFrame& frame,
                               const StartOf& start_of, uint32_t own_facet, double choice, bool with_links,
                               Row& row, TracerCounts& counts) const {
   double visible = 0, direct = 0;
@@ -368,28 +377,38 @@ void EmbreeTracer::trace_patch(uint32_t patch, bool with_links, Row& row, Tracer
 
 void EmbreeTracer::trace_node(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const {
   const FacetNode node = facet_node(patches_, patch);
-  const uint32_t facet = node.facet;
-  const auto corners = facet_positions_texels(surface_, facet);
-  const double leg = facet % 2 == 0 ? 1 : -1;
+  const NodeRays& set = node.subdivision == kFineSubdivision ? fine_rays_ : coarse_rays_;
+  const auto random = [&](uint64_t stream) { return unit_interval(mix_bits(options_.seed, stream, patch)); };
+
+  const auto corners = facet_positions_texels(surface_, node.facet);
+  const double leg = node.facet % 2 == 0 ? 1 : -1;
   const double slope_x = leg * (corners[1].z - corners[0].z), slope_y = leg * (corners[2].z - corners[0].z);
-  const double shift_u = unit_interval(mix_bits(options_.seed, kNodeShiftU, patch));
-  const double shift_v = unit_interval(mix_bits(options_.seed, kNodeShiftV, patch));
-  const double size = kNodeSize / node.subdivision;
+  const double shift_u = random(kNodeShiftU), shift_v = random(kNodeShiftV);
   const auto start_of = [&](size_t i) {
     const glm::dvec2 point = sample_uniform_triangle(
-        {shift_modulo_one(node_points_[i].x, shift_u), shift_modulo_one(node_points_[i].y, shift_v)});
-    const glm::dvec2 uv = (1 - size) * node.uv + size * point;
+        {shift_modulo_one(set.points[i].x, shift_u), shift_modulo_one(set.points[i].y, shift_v)});
+    const glm::dvec2 uv = node_start_uv(node.subdivision, node.node, point);
     // The height is taken at the rounded position: on a steep wall that rounding is more than the lift.
     const float x = static_cast<float>(corners[0].x + leg * uv.x),
                 y = static_cast<float>(corners[0].y + leg * uv.y);
     const double z = corners[0].z + slope_x * (x - corners[0].x) + slope_y * (y - corners[0].y);
     return glm::vec3(x, y, z + lift_texels_);
   };
-  const double turn = 2 * kPi * unit_interval(mix_bits(options_.seed, kNodeRotation, patch));
-  const Frame frame = rotated(frame_about(facet_normal(surface_, facet)), turn);
-  const double choice = unit_interval(mix_bits(options_.seed, kNodeChoice, patch));
-  trace_rays(node_directions_[static_cast<size_t>(node.subdivision - 1)],
-             {frame.tangent, frame.bitangent, frame.normal}, start_of, facet, choice, with_links, row, counts);
+
+  // Cosine-distributed, shifted in elevation too: a few rays at the same elevations everywhere would miss the
+  // same low blockers at every node.
+  thread_local std::vector<WeightedDirection> rays;  // scratch
+  rays.resize(set.azimuths.size());
+  const double count = static_cast<double>(rays.size()), shift = random(kNodeElevation);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const double sin2 = (static_cast<double>(i) + shift) / count;
+    const glm::vec2 horizontal = static_cast<float>(std::sqrt(sin2)) * set.azimuths[i];
+    rays[i] = {{horizontal.x, horizontal.y, std::sqrt(1 - sin2)}, 1 / count, 1 / count};
+  }
+  const Frame frame =
+      rotated(frame_about(facet_normal(surface_, node.facet)), 2 * kPi * random(kNodeRotation));
+  trace_rays(rays, {frame.tangent, frame.bitangent, frame.normal}, start_of, node.facet, random(kNodeChoice),
+             with_links, row, counts);
 }
 
 std::vector<RayRecord> EmbreeTracer::replay_texel(uint32_t texel) const {

@@ -118,7 +118,7 @@ LinkEnergy measure_link_energy(const Surface& surface, const PatchSet& patches, 
   double light = 0, variance = 0;
   for (uint32_t patch = 0; patch < seen.patches.rows; ++patch) {
     const FacetNode node = facet_node(patches, patch);
-    const double area = facet_area_ratio(surface, node.facet) * node_area_share(node);
+    const double area = facet_area_ratio(surface, node.facet) * node_area_share(node.subdivision, node.node);
     const double seen_sky = static_cast<double>(seen.patch_direct_over_pi[patch]);
     light += area * seen_sky;
     variance += area * area * seen_sky * (1 - seen_sky) / rays;

@@ -9,7 +9,6 @@
 
 #include "core/parallel.h"
 #include "core/progress.h"
-#include "tracers/ray_options.h"
 
 namespace hemibake {
 namespace {
@@ -40,7 +39,7 @@ TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, 
         links->blocks[b].patches.shrink_to_fit();
         links->blocks[b].weights.shrink_to_fit();
       }
-      progress.advance(counts[b].rays);
+      progress.advance(block_rows.size());
     }
   });
   TracerCounts total;
@@ -49,15 +48,6 @@ TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, 
     total.cut_short += c.cut_short;
   }
   return total;
-}
-
-uint64_t rays_of_nodes(const PatchSet& patches, int rays_per_texel) {
-  uint64_t rays = 0;
-  for (uint32_t facet = 0; facet + 1 < patches.first.size(); ++facet) {
-    const int k = subdivision(patches, facet);
-    rays += uint64_t{node_count(k)} * static_cast<uint64_t>(rays_per_node(rays_per_texel, k));
-  }
-  return rays;
 }
 
 }  // namespace
@@ -71,13 +61,7 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
   const bool trace_patches = with_links && patches == Patches::kFacets;
 
   const uint32_t patch_count = tracer.patches().count;
-  // One row tells how many rays a receiver takes.
-  Row first_row;
-  TracerCounts first_counts;
-  tracer.trace_texel(0, false, first_row, first_counts);
-  uint64_t rays = texels * first_counts.rays;
-  if (trace_patches) rays += rays_of_nodes(tracer.patches(), static_cast<int>(first_counts.rays));
-  Progress progress("tracing", rays, "ray");
+  Progress progress("tracing", uint64_t{texels} + (trace_patches ? patch_count : 0), "receiver");
 
   if (with_links) seen.gather = make_links(texels, patch_count);
   seen.counts = trace_blocks(
