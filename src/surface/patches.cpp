@@ -126,11 +126,11 @@ glm::dvec2 node_start_uv(int k, uint32_t node, glm::dvec2 point) {
 
 double node_area_share(int k, uint32_t node) {
   const NodePlace place = node_place(k, node);
-  const int a = place.a, b = place.b, c = k - a - b;
-  if (a % 2 + b % 2 + c % 2 != 2) return 0;
-  const bool on_border = a == 0 || b == 0 || c == 0;  // else two of the larger triangles share the node
-  const int larger_triangles = k * k / 4;
-  return (on_border ? 1 : 2) / (3.0 * larger_triangles);
+  const int sides = (place.a == 0) + (place.b == 0) + (place.a + place.b == k);
+  if (k == 2) return sides == 1 ? 1.0 / 3 : 0;
+  // Each of the k² triangles around the node adds a third of itself: six inside, three along a side of the
+  // facet, one at its corner.
+  return (sides == 0 ? 6 : sides == 1 ? 3 : 1) / (3.0 * k * k);
 }
 
 glm::dvec2 patch_position_texels(const Surface& surface, const PatchSet& patches, uint32_t patch) {

@@ -30,9 +30,6 @@ constexpr uint32_t kNoFacet = 0xffffffff;
 constexpr uint64_t kTexelRotation = 1, kNodeRotation = 2, kNodeShiftU = 3, kNodeShiftV = 4, kTexelChoice = 5,
                    kNodeChoice = 6, kNodeElevation = 7;
 
-// Steps of the golden ratio: any number of them is spread evenly over the unit interval.
-constexpr double kGoldenStep = 0.6180339887498949;
-
 enum class Fate { kSky, kHit, kCutShort };
 
 struct SurfaceHit {
