@@ -76,8 +76,8 @@ PatchSet make_patches(const Surface& surface, Patches kind) {
       patches.first.push_back(static_cast<uint32_t>(count));
       count += 2 * node_count(subdivision_of_run(surface, row + column, in_run)) * in_run;
       if (count > kMaxPatches)
-        throw InputError(fmt::format("more than {} patches, expected a smaller map, or texels as patches",
-                                     kMaxPatches));
+        throw InputError(
+            fmt::format("more than {} patches, expected a smaller map, or texels as patches", kMaxPatches));
     }
   }
   patches.count = static_cast<uint32_t>(count);
@@ -126,11 +126,20 @@ glm::dvec2 node_start_uv(int k, uint32_t node, glm::dvec2 point) {
 
 double node_area_share(int k, uint32_t node) {
   const NodePlace place = node_place(k, node);
-  const int sides = (place.a == 0) + (place.b == 0) + (place.a + place.b == k);
-  if (k == 2) return sides == 1 ? 1.0 / 3 : 0;
-  // Each of the k² triangles around the node adds a third of itself: six inside, three along a side of the
-  // facet, one at its corner.
-  return (sides == 0 ? 6 : sides == 1 ? 3 : 1) / (3.0 * k * k);
+  const int a = place.a, b = place.b, c = k - a - b;
+  const int sides = (a == 0) + (b == 0) + (c == 0);
+  // Linear: each of the k² triangles around the node adds a third of itself, six inside, three along a side
+  // of the facet, one at its corner. Quadratic: of each four of them that make a larger triangle, the nodes
+  // at the middles of its sides count, equally.
+  const double linear = (sides == 0 ? 6 : sides == 1 ? 3 : 1) / (3.0 * k * k);
+  const bool middle = a % 2 + b % 2 + c % 2 == 2;
+  const double quadratic = middle ? (sides == 0 ? 8 : 4) / (3.0 * k * k) : 0;
+  return (linear + quadratic) / 2;
+}
+
+double patch_area_texels(const Surface& surface, const PatchSet& patches, uint32_t patch) {
+  const FacetNode node = facet_node(patches, patch);
+  return 0.5 * facet_area_ratio(surface, node.facet) * node_area_share(node.subdivision, node.node);
 }
 
 glm::dvec2 patch_position_texels(const Surface& surface, const PatchSet& patches, uint32_t patch) {

@@ -75,9 +75,13 @@ uint32_t draw_patch(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, doub
 // belongs to all facets around it, and what it sees depends on whose it is. point: on the facet, uniform.
 glm::dvec2 node_start_uv(int k, uint32_t node, glm::dvec2 point);
 
-// Weight of a node in the mean over its facet's area; adds up to 1 over the nodes. With k = 2 the mean is that
-// of the quadratic through the six nodes (the corners then count nothing), else that of the linear elements.
+// Weight of a node in the mean over its facet's area; adds up to 1 over the nodes: halfway between the rules
+// for linear and for quadratic elements. Where light changes along the folds of the surface they err to
+// opposite sides (by 0.2 % of E₀ on rough maps).
 double node_area_share(int k, uint32_t node);
+
+// Area a node stands for, texels².
+double patch_area_texels(const Surface& surface, const PatchSet& patches, uint32_t patch);
 
 // Position of a patch in texels, texel centres at integers, not wrapped.
 glm::dvec2 patch_position_texels(const Surface& surface, const PatchSet& patches, uint32_t patch);

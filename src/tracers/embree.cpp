@@ -73,9 +73,8 @@ class EmbreeTracer final : public Tracer {
                      uint32_t own_facet, SurfaceHit* hit) const;
   float length_in_block(float x, float y, const glm::vec3& direction) const;
   template <class StartOf>
-  void trace_rays(std::span<const WeightedDirection> rays, const FloatFrame& frame,
-                  const StartOf& start_of, uint32_t own_facet, double choice, bool with_links, Row& row,
-                  TracerCounts& counts) const;
+  void trace_rays(std::span<const WeightedDirection> rays, const FloatFrame& frame, const StartOf& start_of,
+                  uint32_t own_facet, double choice, bool with_links, Row& row, TracerCounts& counts) const;
   void add_links(const SurfaceHit& hit, double weight, double choice, std::vector<Link>& links) const;
   void trace_node(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const;
   uint32_t facet_of_primitive(uint32_t primitive) const;

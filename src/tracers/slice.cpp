@@ -139,12 +139,11 @@ SlicePaths SliceTracer::make_node_paths(int k, uint32_t half, uint32_t node) con
     const double shift_v = unit_interval(mix_bits(options_.seed, kNodeShift, place + 1));
     for (int azimuth = 0; azimuth < paths.azimuths; ++azimuth) {
       const uint32_t index = static_cast<uint32_t>(azimuth);
-      const glm::dvec2 point = sample_uniform_triangle(
-          {shift_modulo_one(radical_inverse(2, index), shift_u),
-           shift_modulo_one(radical_inverse(3, index), shift_v)});
+      const glm::dvec2 point =
+          sample_uniform_triangle({shift_modulo_one(radical_inverse(2, index), shift_u),
+                                   shift_modulo_one(radical_inverse(3, index), shift_v)});
       const glm::dvec2 uv = node_start_uv(k, node, point);
-      paths.paths.push_back(
-          make_slice_path(half == 0 ? uv : 1.0 - uv, angle_of(paths, turn, azimuth), true));
+      paths.paths.push_back(make_slice_path(half == 0 ? uv : 1.0 - uv, angle_of(paths, turn, azimuth), true));
     }
   }
   prepare_segments(field_, std::max(1, kReadyNodeSegments / static_cast<int>(paths.paths.size())), paths);
@@ -272,8 +271,8 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
     const SlicePath& path = paths.paths[paths.path_index(packet.turn, static_cast<int>(hit.azimuth))];
     const glm::dvec2 start = glm::dvec2(packet.x + static_cast<int>(lane), packet.y) + path.origin;
     choice = shift_modulo_one(choice, kGoldenStep);
-    append_links(surface_, patches_, options_.texel_links, hit, static_cast<double>(hit.weight) / whole, start,
-                 path.direction, choice, row.links);
+    append_links(surface_, patches_, options_.texel_links, hit, static_cast<double>(hit.weight) / whole,
+                 start, path.direction, choice, row.links);
   }
   merge_links(row);
 }

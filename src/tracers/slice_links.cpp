@@ -85,8 +85,8 @@ void append_hits(const Stretch& stretch, double rim, float strata_per_weight, st
   }
 }
 
-void append_links(const Surface& surface, const PatchSet& patches, TexelLinks texel_links, const SliceHit& hit,
-                  double weight, glm::dvec2 start, glm::dvec2 direction, double choice,
+void append_links(const Surface& surface, const PatchSet& patches, TexelLinks texel_links,
+                  const SliceHit& hit, double weight, glm::dvec2 start, glm::dvec2 direction, double choice,
                   std::vector<Link>& links) {
   const glm::dvec2 position = start + hit_distance(surface, hit, direction) * direction;
   if (patches.kind == Patches::kFacets) {

@@ -114,17 +114,16 @@ LinkEnergy measure_link_energy(const Surface& surface, const PatchSet& patches, 
   if (surface.edge != Edge::kWrap) return energy;
 
   const double rays = static_cast<double>(seen.counts.rays) / (seen.gather.rows + seen.patches.rows);
-  const double facets = facet_count(surface);
+  const double opening = 0.5 * facet_count(surface);  // texels²
   double light = 0, variance = 0;
   for (uint32_t patch = 0; patch < seen.patches.rows; ++patch) {
-    const FacetNode node = facet_node(patches, patch);
-    const double area = facet_area_ratio(surface, node.facet) * node_area_share(node.subdivision, node.node);
+    const double area = patch_area_texels(surface, patches, patch);
     const double seen_sky = static_cast<double>(seen.patch_direct_over_pi[patch]);
     light += area * seen_sky;
     variance += area * area * seen_sky * (1 - seen_sky) / rays;
   }
-  energy.light_over_opening = light / facets;
-  energy.light_over_opening_stderr = std::sqrt(variance) / facets;
+  energy.light_over_opening = light / opening;
+  energy.light_over_opening_stderr = std::sqrt(variance) / opening;
   return energy;
 }
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "surface/surface.h"
 #include "surface/patches.h"
+#include "surface/surface.h"
 #include "tracers/tracer.h"
 
 namespace hemibake {
