@@ -12,6 +12,7 @@
 // first bounce 1 to 2 % off on rough maps, k = 6 brings no more than 0.1 % over k = 4.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <vector>
@@ -67,8 +68,15 @@ PatchRun run_of_patch(const PatchSet& patches, uint32_t patch);
 
 FacetNode facet_node(const PatchSet& patches, uint32_t patch);
 
-// One of the up to three patches whose light makes up the light at `uv` of a facet, drawn with their share by
-// `choice` in [0, 1): over many hits the same as a link to each, at a third of the links.
+// The patches whose light makes up the light at `uv` of a facet, with their shares: not negative, sum 1.
+struct PatchShare {
+  uint32_t patch;
+  double share;
+};
+std::array<PatchShare, 3> patch_shares(const PatchSet& patches, uint32_t facet, glm::dvec2 uv);
+
+// One of them, drawn with its share by `choice` in [0, 1): over many hits the same as a link to each, at a
+// third of the links.
 uint32_t draw_patch(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double choice);
 
 // Where on its facet a node looks from: in a small copy of the facet at the node. A point exactly on a corner

@@ -316,7 +316,7 @@ EmbreeTracer::FloatFrame EmbreeTracer::texel_frame(uint32_t texel) const {
 void EmbreeTracer::add_links(const SurfaceHit& hit, double weight, double choice,
                              std::vector<Link>& links) const {
   if (options_.patches == Patches::kFacets) {
-    links.push_back({draw_patch(patches_, hit.facet, {hit.u, hit.v}, choice), static_cast<float>(weight)});
+    add_node_links(patches_, hit.facet, {hit.u, hit.v}, hit.distance_texels, choice, weight, links);
   } else if (options_.texel_links == TexelLinks::kNearest) {
     add_nearest_link(surface_, hit_position_texels(hit), weight, links);
   } else {
