@@ -12,6 +12,7 @@
 #include "tracers/tracer.h"
 #include "transport/bake.h"
 #include "transport/energy.h"
+#include "transport/error_estimate.h"
 #include "transport/plan.h"
 
 namespace hemibake {
@@ -36,6 +37,7 @@ struct BakeResult {
   Bake bake;
   Provenance provenance;
   std::optional<LinkEnergy> link_energy;
+  std::optional<ErrorEstimate> errors;  // with links and a bounce
   // For the person at the terminal.
   uint64_t rays = 0;
   double seconds = 0, cpu_seconds = 0, trace_cpu_seconds = 0;

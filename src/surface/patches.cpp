@@ -40,8 +40,6 @@ NodePlace node_place(int k, uint32_t node) {
   return {a, b};
 }
 
-uint32_t node_at(int k, int a, int b) { return static_cast<uint32_t>(b * (k + 1) - b * (b - 1) / 2 + a); }
-
 }  // namespace
 
 PatchSet make_patches(const Surface& surface, Patches kind) {

@@ -51,6 +51,10 @@ struct FacetNode {
   uint32_t node;    // 0 … node_count(k) − 1
 };
 glm::dvec2 node_uv(int k, uint32_t node);
+// The node at u = column/k, v = row/k.
+constexpr uint32_t node_at(int k, int column, int row) {
+  return static_cast<uint32_t>(row * (k + 1) - row * (row - 1) / 2 + column);
+}
 
 // Sixteen neighbours, or what is left of them at the end of a row.
 struct PatchRun {
