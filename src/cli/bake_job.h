@@ -10,6 +10,7 @@
 #include "cli/bake_surface.h"
 #include "io/provenance.h"
 #include "tracers/tracer.h"
+#include "trade/target_error.h"
 #include "transport/bake.h"
 #include "transport/energy.h"
 #include "transport/error_estimate.h"
@@ -23,6 +24,7 @@ struct BakeJob {
   BakeMap map;
   std::unique_ptr<Tracer> tracer;
   BakePlan plan;
+  std::optional<TargetChoice> choice;  // with --target-error; `options` hold what it chose
 
   BakeJob() = default;
   BakeJob(const BakeJob&) = delete;
@@ -38,6 +40,7 @@ struct BakeResult {
   Provenance provenance;
   std::optional<LinkEnergy> link_energy;
   std::optional<ErrorEstimate> errors;  // with links and a bounce
+  std::optional<TargetErrors> reached;  // with --target-error
   // For the person at the terminal.
   uint64_t rays = 0;
   double seconds = 0, cpu_seconds = 0, trace_cpu_seconds = 0;
