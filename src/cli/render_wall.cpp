@@ -1,0 +1,206 @@
+#include "cli/render_wall.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/bake_surface.h"
+#include "cli/name_file.h"
+#include "cli/retrace.h"
+#include "core/constants.h"
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "curves/curves.h"
+#include "fitting/models.h"
+#include "io/fit_file.h"
+#include "io/fitted_model.h"
+#include "io/image_io.h"
+#include "io/table_io.h"
+#include "report/tone.h"
+#include "tracers/sky_light.h"
+
+namespace hemibake {
+namespace {
+
+constexpr int kBins = 100;
+
+Albedo read_albedo(const RenderOptions& options, const Bake& bake) {
+  if (const auto constant = albedo_from_text(options.albedo)) return {*constant, {}};
+  ColorImage image = read_color_image(options.albedo);
+  Grid<glm::vec3>& map = image.colors;
+  if (map.width != bake.width || map.height != bake.height)
+    throw InputError(fmt::format("{}: is {} x {} texels, expected {} x {} as the bake is", options.albedo,
+                                 map.width, map.height, bake.width, bake.height));
+  const bool srgb =
+      options.albedo_encoding == "srgb" || (options.albedo_encoding == "auto" && image.stored_as_integers);
+  for (size_t i = 0; i < map.size(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      if (!(map[i][c] >= 0 && map[i][c] <= 1))
+        throw InputError(fmt::format("{}: reflectance {} at texel {},{}, expected 0..1", options.albedo,
+                                     map[i][c], i % static_cast<size_t>(map.width),
+                                     i / static_cast<size_t>(map.width)));
+      if (srgb) map[i][c] = static_cast<float>(linear_from_srgb(static_cast<double>(map[i][c])));
+    }
+  return {glm::vec3(0), std::move(map)};
+}
+
+Sky read_sky(const RenderOptions& options) {
+  if (options.sky_file().empty()) return uniform_sky();
+  const std::filesystem::path path = options.sky_file();
+  Sky sky;
+  if (options.sky_is_harmonics()) {
+    const std::vector<double> numbers = read_numbers(path, 3 * kHarmonics);
+    for (size_t i = 0; i < kHarmonics; ++i)
+      sky.harmonics[i] = {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
+    return sky;
+  }
+  sky.lat_long = read_color_image(path).colors;
+  for (size_t i = 0; i < sky.lat_long.size(); ++i) {
+    const glm::vec3& value = sky.lat_long[i];
+    if (std::min({value.x, value.y, value.z}) < 0)
+      throw InputError(fmt::format("{}: negative radiance at pixel {},{}, expected 0 or more", path.string(),
+                                   i % static_cast<size_t>(sky.lat_long.width),
+                                   i / static_cast<size_t>(sky.lat_long.width)));
+  }
+  sky.harmonics = project_to_harmonics(sky.lat_long);
+  if (options.sky_truth == "sh") sky.lat_long = {};
+  return sky;
+}
+
+template <class Model>
+ShadingModel shading_model(std::string name, const Model& model) {
+  return {std::move(name), [model](double ao, double albedo) { return model.total(ao, albedo); },
+          [model](double ao) { return model.direct(ao); },
+          [model](double ao) { return model.first_bounce(ao); },
+          [model](double ao) { return model.bounce_ratio(ao); }};
+}
+
+// Of --fit, or of the bake's own curves; none where these do not suffice for a fit, which `reason` then says.
+std::optional<ShadingModel> find_model(const RenderOptions& options, const Bake& bake, std::string& reason) {
+  FitFile fits;
+  std::filesystem::path path = options.fit;
+  if (!path.empty()) {
+    fits = read_fits(path);
+  } else {
+    path = options.bake;
+    try {
+      fits.fits = fit_model(options.model, make_curves(bake, kBins), Abscissa::center, Weights::none);
+    } catch (const std::runtime_error& error) {
+      throw_if_interrupted();
+      reason = error.what();
+      return std::nullopt;
+    }
+  }
+  if (options.model == "published") return shading_model("published", guarded_model(fits, path));
+  return shading_model("bounded", bounded_model(fits, path));
+}
+
+Grid<glm::vec3> unshaded_sky(const Sky& sky, const Bake& bake, const std::optional<Surface>& surface) {
+  const Grid<glm::vec3>& normals = bake.normals.empty() && surface ? surface->normals : bake.normals;
+  if (sky.uniform) return Grid<glm::vec3>(bake.width, bake.height, glm::vec3(static_cast<float>(kPi)));
+  Grid<glm::vec3> irradiance(normals.width, normals.height);
+  for (size_t i = 0; i < irradiance.size(); ++i)
+    irradiance[i] = glm::vec3(harmonic_irradiance(sky.harmonics, glm::dvec3(normals[i])));
+  return irradiance;
+}
+
+std::vector<glm::dvec3> uniform_light(std::span<const float> direct_over_pi) {
+  std::vector<glm::dvec3> light;
+  for (const float direct : direct_over_pi) light.emplace_back(kPi * static_cast<double>(direct));
+  return light;
+}
+
+void add_sun(const std::vector<double>& share, double irradiance, std::vector<glm::dvec3>& light) {
+  for (size_t i = 0; i < light.size(); ++i) light[i] += glm::dvec3(irradiance * share[i]);
+}
+
+// Sky and sun before any bounce, at every texel and every patch.
+DirectLight direct_light(const RenderOptions& options, const Sky& sky, const std::optional<Sun>& sun,
+                         const Surface* surface, const Visibility& seen,
+                         const std::vector<double>& sun_share) {
+  const bool texels_are_patches = seen.patches.empty();
+  DirectLight light;
+  if (sky.uniform) {
+    light.texels = uniform_light(seen.direct_over_pi.values);
+    light.patches = uniform_light(seen.patch_direct());
+  } else {
+    const SkyLightOptions rays{options.sky_rays, 0, sky.mean_radiance()};
+    const Radiance radiance = [&](const glm::dvec3& d) { return sky.radiance(d); };
+    light.texels = sky_light_of_texels(*surface, seen.direct_over_pi.values, radiance, rays);
+    light.patches = texels_are_patches ? light.texels
+                                       : sky_light_of_facets(*surface, seen.patch_direct(), radiance, rays);
+  }
+  if (!sun) return light;
+  add_sun(sun_share, sun->irradiance, light.texels);
+  add_sun(texels_are_patches ? sun_share : sun_share_of_facets(*surface, sun->direction), sun->irradiance,
+          light.patches);
+  return light;
+}
+
+}  // namespace
+
+RenderedWall light_wall(const RenderOptions& options, BakeFile file) {
+  RenderedWall result;
+  Wall& wall = result.wall;
+  nlohmann::ordered_json& light = result.light;
+  const Bake& bake = file.bake;
+  wall.albedo = read_albedo(options, bake);
+  const Sky sky = read_sky(options);
+  const std::optional<Sun> sun = sun_from_text(options.sun);
+  const bool runs_again = !wall.albedo.map.empty() || !sky.uniform || sun;
+
+  std::string no_map;
+  std::optional<BakeOptions> tracing;
+  try {
+    tracing = tracing_options_from(file, options.bake);
+    wall.surface = load_bake_map(*tracing).surface;
+    if (wall.surface->width() != bake.width || wall.surface->height() != bake.height)
+      throw InputError(options.bake.string() + ": its map has another size, expected the bake's");
+  } catch (const InputError& error) {
+    if (runs_again && (options.links.empty() || !sky.uniform || sun)) throw;
+    wall.surface.reset();
+    no_map = error.what();
+  }
+  if (!no_map.empty()) light["map"] = no_map;
+
+  wall.sky = unshaded_sky(sky, bake, wall.surface);
+  std::string no_model;
+  wall.model = find_model(options, bake, no_model);
+  if (!no_model.empty()) light["model"] = no_model;
+
+  std::vector<double> sun_share;
+  if (sun) {
+    sun_share = sun_share_of_texels(*wall.surface, sun->direction);
+    std::vector<glm::dvec3> irradiance(sun_share.size());
+    add_sun(sun_share, sun->irradiance, irradiance);
+    wall.sun = Grid<glm::vec3>(bake.width, bake.height);
+    std::ranges::transform(irradiance, wall.sun.values.begin(),
+                           [](const glm::dvec3& e) { return glm::vec3(e); });
+  }
+  if (runs_again) {
+    const Visibility seen =
+        options.links.empty() ? retrace(*tracing) : visibility_from_links(options.links, file);
+    const Patches patches = seen.patches.empty() ? Patches::kTexels : Patches::kFacets;
+    if (!wall.surface && patches == Patches::kFacets) throw InputError(no_map);
+    const int bounces =
+        bake.irradiance.size() > 1 ? static_cast<int>(bake.irradiance.size()) - 1 : BakeOptions().bounces;
+    const DirectLight direct =
+        direct_light(options, sky, sun, wall.surface ? &*wall.surface : nullptr, seen, sun_share);
+    const Surface* surface = wall.surface ? &*wall.surface : nullptr;
+    wall.truth = relight_over_links(seen, direct, albedo_of_patches(*surface, wall.albedo, patches), bounces,
+                                    sky.uniform && !sun ? std::optional(kPi) : std::nullopt);
+  } else if (!bake.irradiance.empty()) {
+    wall.truth = relight_constant(bake.irradiance, wall.albedo.constant);
+  }
+  if (wall.truth) {
+    light["bounces"] = wall.truth->bounces.size() - 1;
+    light["rest_of_series_mean_over_pi"] = wall.truth->mean_rest / kPi;
+    light["rest_of_series_largest_over_pi"] = wall.truth->largest_rest / kPi;
+  }
+  wall.bake = std::move(file.bake);
+  return result;
+}
+
+}  // namespace hemibake
