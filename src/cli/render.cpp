@@ -38,10 +38,6 @@ void remove_earlier_pictures(const fs::path& folder) {
   }
 }
 
-nlohmann::ordered_json json_from_error(const PictureError& error) {
-  return {{"bias_over_mean", error.bias}, {"rms_over_mean", error.rms}, {"largest_over_mean", error.largest}};
-}
-
 nlohmann::ordered_json errors_of(const ShadedWall& shaded) {
   nlohmann::ordered_json errors = nlohmann::ordered_json::object();
   if (shaded.truth.empty()) return errors;
@@ -58,10 +54,7 @@ void draw(const RenderOptions& options, const Wall& wall, const ShadedWall& shad
   if (options.wants("saturation")) add_saturation(wall, shaded, gallery);
   if (options.wants("planes")) add_planes(wall, gallery);
   if (options.wants("estimators")) add_estimators(wall, gallery);
-  if (options.wants("views")) {
-    add_views(wall, shaded, options.picture, gallery);
-    add_overview(wall, shaded, options.picture, gallery);
-  }
+  if (options.wants("views")) add_views(wall, shaded, options.picture, gallery);
   if (!has_font()) gallery.say_missing("captions", "no font was found, expected fonts-dejavu-core");
 }
 

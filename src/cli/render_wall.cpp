@@ -47,7 +47,7 @@ Albedo read_albedo(const RenderOptions& options, const Bake& bake) {
 }
 
 Sky read_sky(const RenderOptions& options) {
-  if (options.sky_file().empty()) return uniform_sky();
+  if (options.sky_file().empty()) return make_uniform_sky();
   const std::filesystem::path path = options.sky_file();
   Sky sky;
   if (options.sky_is_harmonics()) {
@@ -116,30 +116,68 @@ void add_sun(const std::vector<double>& share, double irradiance, std::vector<gl
   for (size_t i = 0; i < light.size(); ++i) light[i] += glm::dvec3(irradiance * share[i]);
 }
 
-// Sky and sun before any bounce, at every texel and every patch.
-DirectLight direct_light(const RenderOptions& options, const Sky& sky, const std::optional<Sun>& sun,
-                         const Surface* surface, const Visibility& seen,
-                         const std::vector<double>& sun_share) {
-  const bool texels_are_patches = seen.patches.empty();
-  DirectLight light;
-  if (sky.uniform) {
-    light.texels = uniform_light(seen.direct_over_pi.values);
-    light.patches = uniform_light(seen.patch_direct());
-  } else {
-    const SkyLightOptions rays{options.sky_rays, 0, sky.mean_radiance()};
-    const Radiance radiance = [&](const glm::dvec3& d) { return sky.radiance(d); };
-    light.texels = sky_light_of_texels(*surface, seen.direct_over_pi.values, radiance, rays);
-    light.patches = texels_are_patches ? light.texels
-                                       : sky_light_of_facets(*surface, seen.patch_direct(), radiance, rays);
-  }
-  if (!sun) return light;
-  add_sun(sun_share, sun->irradiance, light.texels);
-  add_sun(texels_are_patches ? sun_share : sun_share_of_facets(*surface, sun->direction), sun->irradiance,
-          light.patches);
+// The sky before any bounce, at every texel and every patch.
+ColoredLight sky_light(const RenderOptions& options, const Sky& sky, const Surface& surface,
+                       const Visibility& seen) {
+  if (sky.uniform) return {uniform_light(seen.direct_over_pi.values), uniform_light(seen.patch_direct())};
+  const SkyLightOptions rays{options.sky_rays, 0, sky.mean_radiance()};
+  const Radiance radiance = [&](const glm::dvec3& d) { return sky.radiance(d); };
+  ColoredLight light;
+  light.texels = sky_light_of_texels(surface, seen.direct_over_pi.values, radiance, rays);
+  light.patches =
+      seen.patches.empty() ? light.texels : sky_light_of_facets(surface, seen.patch_direct(), radiance, rays);
   return light;
 }
 
+Grid<glm::vec3> as_grid(const std::vector<glm::dvec3>& light, const Surface& surface) {
+  Grid<glm::vec3> grid(surface.width(), surface.height());
+  std::ranges::transform(light, grid.values.begin(), [](const glm::dvec3& e) { return glm::vec3(e); });
+  return grid;
+}
+
+// What nine coefficients of the sky are off by where the surface hides parts of it: E₀ of the texels under
+// the projection against that under the sky itself.
+PictureError error_of_projection(const Sky& sky, const Surface& surface, const Visibility& seen, int rays,
+                                 const std::vector<glm::dvec3>& traced) {
+  const auto projected =
+      sky_light_of_texels(surface, seen.direct_over_pi.values,
+                          [&](const glm::dvec3& d) { return harmonic_radiance(sky.harmonics, d); },
+                          {rays, 0, sky.mean_radiance()});
+  return picture_error(as_grid(projected, surface), as_grid(traced, surface));
+}
+
+// Sends sky and sun round over the links of the bake.
+void relight(const RenderOptions& options, const BakeFile& file, const BakeOptions& tracing, const Sky& sky,
+             const std::optional<Sun>& sun, RenderedWall& result) {
+  Wall& wall = result.wall;
+  const Surface& surface = *wall.surface;
+  const Visibility seen =
+      options.links.empty() ? retrace(tracing) : visibility_from_links(options.links, file);
+  const bool facets = !seen.patches.empty();
+  ColoredLight light = sky_light(options, sky, surface, seen);
+  if (!sky.lat_long.empty())
+    result.light["sky_projected_against_traced"] =
+        json_from_error(error_of_projection(sky, surface, seen, options.sky_rays, light.texels));
+  if (sun) {
+    const std::vector<double> share = sun_share_of_texels(surface, sun->direction);
+    std::vector<glm::dvec3> irradiance(share.size());
+    add_sun(share, sun->irradiance, irradiance);
+    wall.sun = as_grid(irradiance, surface);
+    add_sun(share, sun->irradiance, light.texels);
+    add_sun(facets ? sun_share_of_facets(surface, sun->direction) : share, sun->irradiance, light.patches);
+  }
+  const size_t stored = file.bake.irradiance.size();
+  wall.truth = relight_over_links(
+      seen, light, albedo_of_patches(surface, wall.albedo, facets ? Patches::kFacets : Patches::kTexels),
+      stored > 1 ? static_cast<int>(stored) - 1 : BakeOptions().bounces,
+      sky.uniform && !sun ? std::optional(kPi) : std::nullopt);
+}
+
 }  // namespace
+
+nlohmann::ordered_json json_from_error(const PictureError& error) {
+  return {{"bias_over_mean", error.bias}, {"rms_over_mean", error.rms}, {"largest_over_mean", error.largest}};
+}
 
 RenderedWall light_wall(const RenderOptions& options, BakeFile file) {
   RenderedWall result;
@@ -151,46 +189,25 @@ RenderedWall light_wall(const RenderOptions& options, BakeFile file) {
   const std::optional<Sun> sun = sun_from_text(options.sun);
   const bool runs_again = !wall.albedo.map.empty() || !sky.uniform || sun;
 
-  std::string no_map;
-  std::optional<BakeOptions> tracing;
+  BakeOptions tracing;
   try {
     tracing = tracing_options_from(file, options.bake);
-    wall.surface = load_bake_map(*tracing).surface;
+    wall.surface = load_bake_map(tracing).surface;
     if (wall.surface->width() != bake.width || wall.surface->height() != bake.height)
       throw InputError(options.bake.string() + ": its map has another size, expected the bake's");
   } catch (const InputError& error) {
-    if (runs_again && (options.links.empty() || !sky.uniform || sun)) throw;
+    if (runs_again) throw;
     wall.surface.reset();
-    no_map = error.what();
+    light["map"] = error.what();
   }
-  if (!no_map.empty()) light["map"] = no_map;
 
   wall.sky = unshaded_sky(sky, bake, wall.surface);
   std::string no_model;
   wall.model = find_model(options, bake, no_model);
   if (!no_model.empty()) light["model"] = no_model;
 
-  std::vector<double> sun_share;
-  if (sun) {
-    sun_share = sun_share_of_texels(*wall.surface, sun->direction);
-    std::vector<glm::dvec3> irradiance(sun_share.size());
-    add_sun(sun_share, sun->irradiance, irradiance);
-    wall.sun = Grid<glm::vec3>(bake.width, bake.height);
-    std::ranges::transform(irradiance, wall.sun.values.begin(),
-                           [](const glm::dvec3& e) { return glm::vec3(e); });
-  }
   if (runs_again) {
-    const Visibility seen =
-        options.links.empty() ? retrace(*tracing) : visibility_from_links(options.links, file);
-    const Patches patches = seen.patches.empty() ? Patches::kTexels : Patches::kFacets;
-    if (!wall.surface && patches == Patches::kFacets) throw InputError(no_map);
-    const int bounces =
-        bake.irradiance.size() > 1 ? static_cast<int>(bake.irradiance.size()) - 1 : BakeOptions().bounces;
-    const DirectLight direct =
-        direct_light(options, sky, sun, wall.surface ? &*wall.surface : nullptr, seen, sun_share);
-    const Surface* surface = wall.surface ? &*wall.surface : nullptr;
-    wall.truth = relight_over_links(seen, direct, albedo_of_patches(*surface, wall.albedo, patches), bounces,
-                                    sky.uniform && !sun ? std::optional(kPi) : std::nullopt);
+    relight(options, file, tracing, sky, sun, result);
   } else if (!bake.irradiance.empty()) {
     wall.truth = relight_constant(bake.irradiance, wall.albedo.constant);
   }

@@ -17,8 +17,8 @@ struct TextSize {
 };
 TextSize text_size(std::string_view text, int size);
 
-// Draws a line of text, UTF-8, beginning at x with its letters standing on y. What is outside the picture is
-// left out. Without a font nothing is drawn.
+// Draws a line of text, ASCII (OpenImageIO 2.4 gets other letters wrong), beginning at x with its letters
+// standing on y. What is outside the picture is left out. Without a font nothing is drawn.
 void draw_text(Grid<glm::vec3>& picture, int x, int y, std::string_view text, int size,
                const glm::vec3& color);
 

@@ -69,7 +69,7 @@ glm::dvec3 diverging_color(double value) {
 double round_scale(double value) {
   if (!(value > 0)) return 1;
   const double decade = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double step : {1.0, 2.0, 5.0})
+  for (const double step : {1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0})
     if (step * decade >= value * (1 - 1e-12)) return step * decade;
   return 10 * decade;
 }

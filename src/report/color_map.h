@@ -16,7 +16,7 @@ glm::dvec3 sequential_color(double value);
 // Linear sRGB, 0..1. value: −1..1, blue to red over near white, the same lightness at v and −v.
 glm::dvec3 diverging_color(double value);
 
-// The smallest of 1, 2, 5 · 10ⁿ not below `value`; 1 for 0.
+// The smallest of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times 10ⁿ not below `value`; 1 for 0.
 double round_scale(double value);
 
 }  // namespace hemibake

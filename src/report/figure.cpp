@@ -25,18 +25,41 @@ Grid<T> magnified(const Grid<T>& values, int factor) {
   return large;
 }
 
-// Means of factor × factor blocks; the last ones may be smaller. Sum: T in double.
+// What a pixel of a reduced picture covers of the rows (or columns) it is made of.
+struct Cover {
+  int first = 0;
+  std::vector<double> shares;  // of first, first + 1, …; they sum to 1
+};
+
+std::vector<Cover> covers(int from, int to) {
+  std::vector<Cover> result(static_cast<size_t>(to));
+  const double size = static_cast<double>(from) / to;
+  for (int k = 0; k < to; ++k) {
+    const double begin = k * size, end = std::min<double>(from, (k + 1) * size);
+    Cover& cover = result[static_cast<size_t>(k)];
+    cover.first = static_cast<int>(begin);
+    for (int i = cover.first; i < end; ++i)
+      cover.shares.push_back((std::min(end, i + 1.0) - std::max(begin, static_cast<double>(i))) /
+                             (end - begin));
+  }
+  return result;
+}
+
+// Means over the area of each pixel. Sum: T in double.
 template <class Sum, class T>
-Grid<T> reduced(const Grid<T>& values, int factor) {
-  Grid<T> small((values.width + factor - 1) / factor, (values.height + factor - 1) / factor);
-  for (int y = 0; y < small.height; ++y)
-    for (int x = 0; x < small.width; ++x) {
-      const int right = std::min(values.width, (x + 1) * factor);
-      const int bottom = std::min(values.height, (y + 1) * factor);
+Grid<T> reduced(const Grid<T>& values, int width, int height) {
+  Grid<T> small(width, height);
+  const std::vector<Cover> columns = covers(values.width, width), rows = covers(values.height, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const Cover& across = columns[static_cast<size_t>(x)];
+      const Cover& along = rows[static_cast<size_t>(y)];
       Sum sum(0);
-      for (int j = y * factor; j < bottom; ++j)
-        for (int i = x * factor; i < right; ++i) sum += Sum(values(i, j));
-      small(x, y) = T(sum / static_cast<double>((right - x * factor) * (bottom - y * factor)));
+      for (size_t j = 0; j < along.shares.size(); ++j)
+        for (size_t i = 0; i < across.shares.size(); ++i)
+          sum += along.shares[j] * across.shares[i] *
+                 Sum(values(across.first + static_cast<int>(i), along.first + static_cast<int>(j)));
+      small(x, y) = T(sum);
     }
   return small;
 }
@@ -44,14 +67,22 @@ Grid<T> reduced(const Grid<T>& values, int factor) {
 template <class Sum, class T>
 Grid<T> scaled_to(const Grid<T>& values, int side) {
   const int longer = std::max(values.width, values.height);
-  if (longer > side) return reduced<Sum>(values, (longer + side - 1) / side);
-  return side / longer > 1 ? magnified(values, side / longer) : values;
+  if (longer <= side) return side / longer > 1 ? magnified(values, side / longer) : values;
+  const auto part = [&](int length) {
+    return std::max(1, static_cast<int>(std::lround(static_cast<double>(length) * side / longer)));
+  };
+  return reduced<Sum>(values, part(values.width), part(values.height));
 }
 
 void paste(Grid<glm::vec3>& picture, const Grid<glm::vec3>& part, int x, int y) {
   for (int j = 0; j < part.height; ++j)
     std::copy_n(part.values.begin() + static_cast<std::ptrdiff_t>(part.index(0, j)), part.width,
                 picture.values.begin() + static_cast<std::ptrdiff_t>(picture.index(x, y + j)));
+}
+
+// A panel with its caption above.
+int width_of(const Panel& panel) {
+  return std::max(panel.shown.width, text_size(panel.caption, kLetters).width);
 }
 
 struct RowSize {
@@ -62,7 +93,7 @@ struct RowSize {
 RowSize size_of(const std::vector<Panel>& row) {
   RowSize size;
   for (const Panel& panel : row) {
-    size.width += panel.shown.width + (size.width > 0 ? kGap : 0);
+    size.width += width_of(panel) + (size.width > 0 ? kGap : 0);
     size.height = std::max(size.height, panel.shown.height);
     if (!panel.caption.empty() && has_font()) size.caption = kLetters + kGap;
   }
@@ -132,7 +163,7 @@ Grid<glm::vec3> make_figure(std::span<const std::vector<Panel>> rows,
     for (const Panel& panel : row) {
       draw_text(figure, x, y + kLetters, panel.caption, kLetters, kInk);
       paste(figure, panel.shown, x, y + size.caption);
-      x += panel.shown.width + kGap;
+      x += width_of(panel) + kGap;
     }
     y += size.caption + size.height + kGap;
   }

@@ -17,8 +17,8 @@ struct Panel {
   std::string caption;  // above it
 };
 
-// Linear values brought to a longer side of at most `side` pixels (means of whole blocks), or magnified by a
-// whole number to as near below `side` as that goes.
+// Linear values brought to a longer side of `side` pixels (means over the area of each), or magnified by a
+// whole number to as near below that as it goes.
 Grid<glm::vec3> scaled(const Grid<glm::vec3>& linear, int side);
 Grid<float> scaled(const Grid<float>& values, int side);
 

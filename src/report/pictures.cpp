@@ -13,9 +13,10 @@
 namespace hemibake {
 namespace {
 
+constexpr const char* kDifferenceLabel = "luminance minus ground truth; blue: too dark, red: too bright";
 constexpr int kPanelSide = 384;       // longest side of a panel in a figure
-constexpr int kStripSide = 224;       // of one in a strip
-constexpr double kScaleShare = 0.99;  // of the pixels, that a scale of differences takes in
+constexpr int kStripSide = 200;       // of one in a strip
+constexpr double kScaleShare = 0.98;  // of the pixels, that a scale of differences takes in
 
 Panel light_panel(const Grid<glm::vec3>& linear, int side, double exposure_ev, std::string caption) {
   Clipping shown_here_only;  // the picture by itself reports its own
@@ -48,7 +49,7 @@ ColorScale difference_scale(const Grid<float>& a, const Grid<float>& b, const st
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
 std::string error_caption(const char* name, const Grid<glm::vec3>& picture, const Grid<glm::vec3>& truth) {
-  if (truth.empty()) return name;
+  if (picture.empty() || truth.empty()) return name;
   const PictureError error = picture_error(picture, truth);
   return fmt::format("{}: {:+.1f} % in mean, rms {}", name, 100 * error.bias, percent(error.rms));
 }
@@ -82,11 +83,12 @@ ShadedWall shade_wall(const Wall& wall, const PictureOptions& options) {
 
 void add_triptych(const Wall& wall, const ShadedWall& shaded, Gallery& gallery) {
   std::vector<Panel> row;
-  const auto add = [&](const char* name, const Grid<glm::vec3>& picture, std::string caption,
+  const auto add = [&](const char* name, const Grid<glm::vec3>& picture, const std::string& caption,
                        const std::string& reason) {
     if (picture.empty()) return gallery.say_missing(name, reason);
     gallery.add_light(name, picture, shaded.exposure_ev);
-    row.push_back(light_panel(picture, kPanelSide, shaded.exposure_ev, std::move(caption)));
+    row.push_back(light_panel(picture, kPanelSide, shaded.exposure_ev,
+                              fmt::format("{}, {:+.2f} EV", caption, shaded.exposure_ev)));
   };
   add("ao_only", shaded.ao_only, "AO only", why_not(wall, false));
   add("model", shaded.model, wall.model ? "model (" + wall.model->name + ")" : "", why_not(wall, true));
@@ -104,8 +106,7 @@ void add_differences(const ShadedWall& shaded, Gallery& gallery) {
   std::vector<Grid<glm::vec3>> differences;
   for (const NamedDifference& one : named) differences.push_back(difference(*one.picture, shaded.truth));
   const ColorScale scale =
-      difference_scale(luminance_of(differences.front()), luminance_of(differences.back()),
-                       "luminance minus ground truth; blue: too dark, red: too bright");
+      difference_scale(luminance_of(differences.front()), luminance_of(differences.back()), kDifferenceLabel);
   std::vector<Panel> row;
   for (size_t k = 0; k < named.size(); ++k) {
     const Grid<float> shown = luminance_of(differences[k]);
@@ -129,7 +130,7 @@ void add_bounces(const Wall& wall, const PictureOptions& options, Gallery& galle
     gallery.add_light(fmt::format("bounce_{:02}", b), light, exposure_ev);
     row.push_back(light_panel(
         light, kStripSide, exposure_ev,
-        fmt::format("{} {:+.2f} EV", b == 0 ? "direct" : fmt::format("bounce {}", b), exposure_ev)));
+        fmt::format("{}, {:+.2f} EV", b == 0 ? "direct" : fmt::format("bounce {}", b), exposure_ev)));
   }
   if (count == 1) gallery.say_missing("bounces after the first", "the bake holds none");
   gallery.add_figure("bounces", {&row, 1});
@@ -164,9 +165,10 @@ void add_saturation(const Wall& wall, const ShadedWall& shaded, Gallery& gallery
     return model.direct(ao) + rho * model.first_bounce(ao);
   };
   const std::array<std::vector<Panel>, 3> rows = {
-      std::vector{
-          light_panel(hue, width, 0, "colour of the light that was reflected, τ from 0 to 1: ρ/(1−ρτ)")},
-      std::vector{light_panel(light, width, 0, "what is left of it where no light is lost: ρ(1−τ)/(1−ρτ)")},
+      std::vector{light_panel(hue, width, 0,
+                              "colour of reflected light as tau goes from 0 to 1: rho / (1 - rho tau)")},
+      std::vector{light_panel(light, width, 0,
+                              "what is left of it where no light is lost: rho (1 - tau) / (1 - rho tau)")},
       std::vector{panel(direct, "model, direct light only"), panel(one_bounce, "model, one bounce"),
                   panel(model.total, "model, all bounces")}};
   gallery.add_figure("saturation", rows);
@@ -174,35 +176,38 @@ void add_saturation(const Wall& wall, const ShadedWall& shaded, Gallery& gallery
   Grid<float> tau(wall.bake.width, wall.bake.height);
   for (size_t i = 0; i < tau.size(); ++i)
     tau[i] = static_cast<float>(model.bounce_ratio(static_cast<double>(wall.bake.visible_fraction[i])));
-  gallery.add_numbers("tau", tau,
-                      {sequential_color, 0, 1, 0, "τ: each further bounce over the one before, at albedo 1"});
+  gallery.add_numbers(
+      "tau", tau, {sequential_color, 0, 1, 0, "tau: each further bounce over the one before, at albedo 1"});
 }
 
-void add_overview(const Wall& wall, const ShadedWall& shaded, const PictureOptions& options,
-                  Gallery& gallery) {
-  if (shaded.ao_only.empty() || shaded.model.empty() || !wall.truth || !wall.surface) return;
-  constexpr int kColumns = 3, kColumnWidth = 360;
-  CameraOptions camera = options.camera;
-  camera.width = kColumnWidth;
-  camera.height = kColumnWidth * 3 / 4;
-  const View view = look_at(*wall.surface, camera);
-  const auto seen = [&](const Grid<glm::vec3>& picture, std::string caption) {
-    return light_panel(paint_view(*wall.surface, view, picture, glm::vec3(0)), kColumnWidth,
-                       shaded.exposure_ev, std::move(caption));
+void add_views(const Wall& wall, const ShadedWall& shaded, const PictureOptions& options, Gallery& gallery) {
+  if (!wall.surface) return gallery.say_missing("views", "the map of the bake was not found");
+  const View view = look_at(*wall.surface, options.camera);
+  const auto seen = [&](const Grid<glm::vec3>& picture) {
+    return paint_view(*wall.surface, view, picture, glm::vec3(0));
   };
   std::array<std::vector<Panel>, 2> rows;
-  rows[0] = {seen(shaded.ao_only, error_caption("AO only", shaded.ao_only, shaded.truth)),
-             seen(shaded.model, error_caption("model", shaded.model, shaded.truth)),
-             seen(shaded.truth, "ground truth")};
-  const Grid<float> of_ao = luminance_of(difference(shaded.ao_only, shaded.truth));
-  const Grid<float> of_model = luminance_of(difference(shaded.model, shaded.truth));
-  const ColorScale scale =
-      difference_scale(of_ao, of_model, "luminance minus ground truth; blue: too dark, red: too bright");
+  const auto add = [&](const char* name, const Grid<glm::vec3>& picture, const std::string& caption) {
+    if (picture.empty()) return;
+    const Grid<glm::vec3> look = seen(picture);
+    gallery.add_light(name, look, shaded.exposure_ev);
+    rows[0].push_back(light_panel(look, kPanelSide, shaded.exposure_ev, caption));
+  };
+  add("view_ao_only", shaded.ao_only, error_caption("AO only", shaded.ao_only, shaded.truth));
+  add("view_model", shaded.model, error_caption("model", shaded.model, shaded.truth));
+  add("view_truth", shaded.truth, "ground truth");
+  if (rows[0].size() < 3)
+    return gallery.say_missing("overview", "not all of AO only, model and truth are there");
+
+  const Grid<float> of_ao = luminance_of(seen(difference(shaded.ao_only, shaded.truth)));
+  const Grid<float> of_model = luminance_of(seen(difference(shaded.model, shaded.truth)));
+  const ColorScale scale = difference_scale(of_ao, of_model, kDifferenceLabel);
   size_t clipped_shown = 0;
-  rows[1] = {{colored(scaled(of_ao, kColumnWidth), scale, clipped_shown), "error of AO only"},
-             {colored(scaled(of_model, kColumnWidth), scale, clipped_shown), "error of the model"},
-             light_panel(shaded.truth, kColumnWidth, shaded.exposure_ev, "ground truth, the texels")};
-  const Grid<glm::vec3> bar = scale_bar(scale, kColumns * kColumnWidth / 2);
+  const Grid<glm::vec3> reflected = seen(difference(shaded.truth, shade_bounce(wall, 0)));
+  rows[1] = {{colored(scaled(of_ao, kPanelSide), scale, clipped_shown), "error of AO only"},
+             {colored(scaled(of_model, kPanelSide), scale, clipped_shown), "error of the model"},
+             light_panel(reflected, kPanelSide, shaded.exposure_ev, "ground truth, bounces alone")};
+  const Grid<glm::vec3> bar = scale_bar(scale, 2 * kPanelSide);
   gallery.add_figure("overview", rows, {&bar, 1});
 }
 

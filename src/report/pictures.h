@@ -33,10 +33,8 @@ void add_saturation(const Wall& wall, const ShadedWall& shaded, Gallery& gallery
 void add_planes(const Wall& wall, Gallery& gallery);
 // Every estimator's AO beside the bake's; alchemy's before and after each pass of its blur.
 void add_estimators(const Wall& wall, Gallery& gallery);
-// AO only, model and truth on the surface itself, seen by a camera.
+// AO only, model and truth on the surface itself, seen by a camera; and the three with their errors on one
+// sheet, `overview`.
 void add_views(const Wall& wall, const ShadedWall& shaded, const PictureOptions& options, Gallery& gallery);
-// The wall, the errors and the bounces on one sheet.
-void add_overview(const Wall& wall, const ShadedWall& shaded, const PictureOptions& options,
-                  Gallery& gallery);
 
 }  // namespace hemibake

@@ -34,12 +34,12 @@ Grid<float> over_pi(const Grid<float>& values) {
   return result;
 }
 
-// "disk, rms 0.021 against α"
+// "disk: rms 0.021 to AO"
 std::string estimate_caption(const std::string& name, const Grid<float>& ao, AoKind kind, const Bake& bake) {
   if (kind == AoKind::kUniform)
-    return fmt::format("{}: rms {:.3f} to α", name, rms_difference(ao.values, bake.visible_fraction.values));
+    return fmt::format("{}: rms {:.3f} to AO", name, rms_difference(ao.values, bake.visible_fraction.values));
   if (bake.irradiance.empty()) return name;
-  return fmt::format("{}: rms {:.3f} to E0/π", name,
+  return fmt::format("{}: rms {:.3f} to E0/pi", name,
                      rms_difference(ao.values, over_pi(bake.irradiance[0]).values));
 }
 
@@ -62,7 +62,7 @@ void add_planes(const Wall& wall, Gallery& gallery) {
   const double low = std::clamp(std::floor(static_cast<double>(least) * 10) / 10, 0.0, 0.9);
   gallery.add_numbers(
       "energy", energy,
-      {sequential_color, low, 1, 0, "all bounces at albedo 1 over π: 1 where no light is missing"});
+      {sequential_color, low, 1, 0, "all bounces at albedo 1 over pi: 1 where no light is missing"});
 }
 
 void add_estimators(const Wall& wall, Gallery& gallery) {
@@ -70,7 +70,7 @@ void add_estimators(const Wall& wall, Gallery& gallery) {
     return gallery.say_missing("estimators", "the bake holds no ao to compare with");
   if (!wall.surface) return gallery.say_missing("estimators", "the map of the bake was not found");
   std::array<std::vector<Panel>, 2> rows;
-  rows[0].push_back(grey_panel(wall.bake.visible_fraction, "the bake, α"));
+  rows[0].push_back(grey_panel(wall.bake.visible_fraction, "the bake, AO"));
   const EstimatorOptions options;
   for (const Estimator& estimator : estimators()) {
     if (estimator.name == std::string_view("alchemy")) continue;
@@ -88,21 +88,11 @@ void add_estimators(const Wall& wall, Gallery& gallery) {
     rows[1].push_back(grey_panel(ao, estimate_caption(caption, ao, AoKind::kCosine, wall.bake)));
   };
   if (!wall.bake.irradiance.empty())
-    rows[1].push_back(grey_panel(over_pi(wall.bake.irradiance[0]), "the bake, E0/π"));
+    rows[1].push_back(grey_panel(over_pi(wall.bake.irradiance[0]), "the bake, E0/pi"));
   add_pass("estimator_alchemy_0", "alchemy, raw", passes.raw);
   add_pass("estimator_alchemy_1", "along rows", passes.blurred_rows);
   add_pass("estimator_alchemy_2", "and columns", passes.blurred);
   gallery.add_figure("estimators", rows);
-}
-
-void add_views(const Wall& wall, const ShadedWall& shaded, const PictureOptions& options, Gallery& gallery) {
-  if (!wall.surface) return gallery.say_missing("views", "the map of the bake was not found");
-  const View view = look_at(*wall.surface, options.camera);
-  for (const auto& [name, picture] :
-       {std::pair{"view_ao_only", &shaded.ao_only}, std::pair{"view_model", &shaded.model},
-        std::pair{"view_truth", &shaded.truth}})
-    if (!picture->empty())
-      gallery.add_light(name, paint_view(*wall.surface, view, *picture, glm::vec3(0)), shaded.exposure_ev);
 }
 
 }  // namespace hemibake

@@ -70,7 +70,7 @@ Relit relight_constant(const std::vector<Grid<float>>& irradiance, const glm::ve
   return relit;
 }
 
-Relit relight_over_links(const Visibility& seen, const DirectLight& direct,
+Relit relight_over_links(const Visibility& seen, const ColoredLight& direct,
                          const std::vector<glm::vec3>& patch_albedo, int bounces,
                          std::optional<double> most) {
   expect_equal(direct.texels.size(), seen.direct_over_pi.size(), "direct light of texels");

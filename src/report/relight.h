@@ -21,7 +21,7 @@ struct Albedo {
 };
 
 // What arrives before any bounce.
-struct DirectLight {
+struct ColoredLight {
   std::vector<glm::dvec3> texels;   // irradiance at every texel
   std::vector<glm::dvec3> patches;  // mean irradiance on every patch
 };
@@ -41,7 +41,7 @@ Relit relight_constant(const std::vector<Grid<float>>& irradiance, const glm::ve
 // The same with the bounces run again over the links, each patch reflecting with its own albedo.
 // patch_albedo: one per patch. bounces: made one by one, 0... most: irradiance that no total exceeds, if
 // known.
-Relit relight_over_links(const Visibility& seen, const DirectLight& direct,
+Relit relight_over_links(const Visibility& seen, const ColoredLight& direct,
                          const std::vector<glm::vec3>& patch_albedo, int bounces,
                          std::optional<double> most = {});
 

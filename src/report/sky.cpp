@@ -82,7 +82,7 @@ SkyHarmonics project_to_harmonics(const Grid<glm::vec3>& map) {
 
 glm::dvec3 Sky::mean_radiance() const { return kY0 * harmonics[0]; }
 
-Sky uniform_sky() {
+Sky make_uniform_sky() {
   Sky sky;
   sky.uniform = true;
   sky.harmonics[0] = glm::dvec3(1 / kY0);

@@ -57,7 +57,7 @@ struct Sky {
   glm::dvec3 mean_radiance() const;
 };
 
-Sky uniform_sky();
+Sky make_uniform_sky();
 
 // Light from one direction.
 struct Sun {

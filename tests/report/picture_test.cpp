@@ -72,8 +72,8 @@ TEST(ColorMap, LightnessIsTheNumber) {
 TEST(ColorMap, RoundScale) {
   EXPECT_EQ(round_scale(0), 1);
   EXPECT_DOUBLE_EQ(round_scale(0.02), 0.02);
-  EXPECT_DOUBLE_EQ(round_scale(0.021), 0.05);
-  EXPECT_DOUBLE_EQ(round_scale(7e-9), 1e-8);
+  EXPECT_DOUBLE_EQ(round_scale(0.021), 0.025);
+  EXPECT_DOUBLE_EQ(round_scale(9e-9), 1e-8);
 }
 
 TEST(Figure, ScalingKeepsTheMean) {
@@ -83,6 +83,9 @@ TEST(Figure, ScalingKeepsTheMean) {
   EXPECT_EQ(small.width, 4);
   EXPECT_EQ(small.height, 3);
   EXPECT_EQ(small(0, 0).x, (0 + 1 + 8 + 9) / 4.0f);
+  const Grid<glm::vec3> third = scaled(picture, 3);  // 8 columns to 3: the first has 0, 1 and two thirds of 2
+  EXPECT_EQ(third.height, 2);
+  EXPECT_NEAR(third(0, 0).x, (0 + 1 + 2 * 2 / 3.0) / (8 / 3.0) + 8, 1e-5);
   EXPECT_EQ(large.width, 24);
   EXPECT_EQ(large(23, 17).x, picture(7, 5).x);
 }
@@ -120,7 +123,9 @@ TEST(Camera, FromAboveTheMapIsItsOwnPicture) {
     for (int x = 0; x < 64; x += 3) {
       const double at_x = 7.5 + (x + 0.5 - 32) / 2, at_y = 7.5 + (y + 0.5 - 32) / 2;
       const double inside = std::min({at_x, at_y, 15 - at_x, 15 - at_y});
-      if (inside < -0.3) EXPECT_EQ(picture(x, y).z, -1) << x << ' ' << y;
+      if (inside < -0.3) {
+        EXPECT_EQ(picture(x, y).z, -1) << x << ' ' << y;
+      }
       if (inside < 0.3) continue;
       EXPECT_NEAR(picture(x, y).x, at_x, 1e-4);
       EXPECT_NEAR(picture(x, y).y, at_y, 1e-4);

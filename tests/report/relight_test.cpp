@@ -29,8 +29,8 @@ Visibility two_patches(double to_second, double to_first) {
 // E₁ = e₁ + w₁₂ ρ₂ E₂ and E₂ = e₂ + w₂₁ ρ₁ E₁, each with its neighbour's albedo.
 TEST(Relight, TwoPatchesWithTheirOwnAlbedo) {
   const Visibility seen = two_patches(0.75, 0.5);
-  const DirectLight direct{{glm::dvec3(1, 2, 0), glm::dvec3(3, 0, 0)},
-                           {glm::dvec3(1, 2, 0), glm::dvec3(3, 0, 0)}};
+  const ColoredLight direct{{glm::dvec3(1, 2, 0), glm::dvec3(3, 0, 0)},
+                            {glm::dvec3(1, 2, 0), glm::dvec3(3, 0, 0)}};
   const std::vector<glm::vec3> albedo = {{0.5f, 0.25f, 1}, {0.25f, 1, 1}};
   const Relit relit = relight_over_links(seen, direct, albedo, 60);
   for (int c = 0; c < 3; ++c) {
@@ -57,8 +57,8 @@ class RelightWall : public testing::Test {
     }();
     return traced;
   }
-  static DirectLight uniform_light() {
-    DirectLight light;
+  static ColoredLight uniform_light() {
+    ColoredLight light;
     for (const float direct : seen().direct_over_pi.values)
       light.texels.emplace_back(kPi * static_cast<double>(direct));
     for (const float direct : seen().patch_direct())
@@ -110,7 +110,7 @@ TEST_F(RelightWall, WhiteWallGivesPi) {
 // E_b = a qᵇ has the sum a/(1−ρq): a V-groove's vertex, the spherical pit.
 TEST(Relight, RestOfASeriesIsExact) {
   std::vector<Grid<float>> irradiance;
-  const double a = 0.7, q = 0.9;
+  const double a = 0.2, q = 0.9;
   for (int b = 0; b <= 5; ++b) irradiance.emplace_back(1, 1, static_cast<float>(a * std::pow(q, b)));
   const Relit relit = relight_constant(irradiance, glm::vec3(0.9f, 0.5f, 0));
   EXPECT_NEAR(relit.total[0].x, a / (1 - 0.9 * q), 5e-6);  // ratio to 2⁻²³, over (1 − 0.81)²

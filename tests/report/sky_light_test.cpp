@@ -61,7 +61,7 @@ TEST(SkyLight, UniformSkyIsExact) {
     EXPECT_EQ(light[i].x, kPi * (2.0 * static_cast<double>(direct[i])));
 }
 
-// The bottom of the pit sees a cone of half-angle T/2: ∫ (1 + cosθ) cosθ dω over it.
+// The bottom of the pit sees its rim at an elevation of T/2, so a cone of half-angle π/2 − T/2: ∫ (1 + cosθ) cosθ dω over it.
 TEST(SkyLight, BottomOfThePit) {
   const double angle = kPi / 3;
   const SphericalPit pit = make_spherical_pit(64, angle);
@@ -69,9 +69,9 @@ TEST(SkyLight, BottomOfThePit) {
   const auto light =
       sky_light_of_texels(pit.surface, unknown, [](const glm::dvec3& d) { return glm::dvec3(1 + d.z); },
                           {1024, 0, glm::dvec3(0)});
-  const double edge = std::cos(angle / 2);
+  const double edge = std::sin(angle / 2);
   const double expected = kPi * (1 - edge * edge) + 2 * kPi / 3 * (1 - std::pow(edge, 3));
-  // A jagged rim: half a texel of 29, once round, moves C = sin²(T/2) by that share at most.
+  // A jagged rim: half a texel of 29, once round, moves what is seen by that share at most.
   const double jags = expected * 0.5 / 29;
   EXPECT_NEAR(light[pit.surface.heights_m.index(32, 32)].x, expected, jags + 2 * kPi / std::pow(1024, 0.75));
 }

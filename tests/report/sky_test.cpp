@@ -66,7 +66,7 @@ TEST(Sky, BasisIsThatOfRamamoorthiAndHanrahan) {
 }
 
 TEST(Sky, UniformSkyGivesPi) {
-  const Sky sky = uniform_sky();
+  const Sky sky = make_uniform_sky();
   for (const glm::dvec3& d : {glm::dvec3(0, 0, 1), glm::normalize(glm::dvec3(1, 2, -0.5))}) {
     EXPECT_NEAR(sky.radiance(d).y, 1, 1e-15);
     EXPECT_NEAR(harmonic_irradiance(sky.harmonics, d).x, kPi, 1e-14);
