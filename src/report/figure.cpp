@@ -12,7 +12,7 @@ namespace hemibake {
 namespace {
 
 constexpr int kGap = 8;       // pixels between panels and around the figure
-constexpr int kLetters = 15;  // size of captions
+constexpr int kLetters = 14;  // size of captions
 constexpr int kSmallLetters = 13;
 constexpr int kBarHeight = 14;
 constexpr glm::vec3 kInk{0.13f, 0.13f, 0.13f};

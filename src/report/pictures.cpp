@@ -51,7 +51,7 @@ std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share);
 std::string error_caption(const char* name, const Grid<glm::vec3>& picture, const Grid<glm::vec3>& truth) {
   if (picture.empty() || truth.empty()) return name;
   const PictureError error = picture_error(picture, truth);
-  return fmt::format("{}: {:+.1f} % in mean, rms {}", name, 100 * error.bias, percent(error.rms));
+  return fmt::format("{}: mean {:+.1f} %, rms {}", name, 100 * error.bias, percent(error.rms));
 }
 
 // What stands in for a picture that cannot be made.

@@ -61,7 +61,8 @@ TEST(SkyLight, UniformSkyIsExact) {
     EXPECT_EQ(light[i].x, kPi * (2.0 * static_cast<double>(direct[i])));
 }
 
-// The bottom of the pit sees its rim at an elevation of T/2, so a cone of half-angle π/2 − T/2: ∫ (1 + cosθ) cosθ dω over it.
+// The bottom of the pit sees its rim at an elevation of T/2, so a cone of half-angle π/2 − T/2: ∫ (1 + cosθ)
+// cosθ dω over it.
 TEST(SkyLight, BottomOfThePit) {
   const double angle = kPi / 3;
   const SphericalPit pit = make_spherical_pit(64, angle);
