@@ -22,6 +22,7 @@ CommandBody setup_synth(CLI::App& app);
 CommandBody setup_bake(CLI::App& app);
 CommandBody setup_check(CLI::App& app);
 CommandBody setup_run(CLI::App& app);
+CommandBody setup_trade(CLI::App& app);
 
 namespace {
 
@@ -42,6 +43,7 @@ constexpr std::array kCommands = {
             setup_render},
     Command{"check", "check that light is neither made nor lost", setup_check},
     Command{"run", "bake, curves, fit and check in one go", setup_run},
+    Command{"trade", "what every method costs and how far off it is, against a converged reference", setup_trade},
 };
 
 // One line, whatever a file name or a library puts into it.
