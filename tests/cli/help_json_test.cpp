@@ -26,7 +26,8 @@ const std::vector<CommandHelp> kCommands = {
     {"fit", {"--model", "--abscissa", "--weights"}},
     {"render", {"--albedo", "--sky", "--sun", "--exposure", "--links", "--fit"}},
     {"check", {"--tolerance"}},
-    {"run", {"--bins"}}};
+    {"run", {"--bins"}},
+    {"report", {"--albedo", "--image-size"}}};
 
 TEST(Help, NamesEveryOptionOfTheDesign) {
   for (const CommandHelp& command : kCommands) {
