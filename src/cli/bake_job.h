@@ -13,6 +13,7 @@
 #include "trade/target_error.h"
 #include "transport/bake.h"
 #include "transport/energy.h"
+#include "transport/error_estimate.h"
 #include "transport/plan.h"
 
 namespace hemibake {
@@ -38,6 +39,7 @@ struct BakeResult {
   Bake bake;
   Provenance provenance;
   std::optional<LinkEnergy> link_energy;
+  std::optional<ErrorEstimate> errors;  // with links and a bounce
   std::optional<TargetErrors> reached;  // with --target-error
   // For the person at the terminal.
   uint64_t rays = 0;
