@@ -118,14 +118,15 @@ void add_sun(const std::vector<double>& share, double irradiance, std::vector<gl
 
 // The sky before any bounce, at every texel and every patch.
 ColoredLight sky_light(const RenderOptions& options, const Sky& sky, const Surface& surface,
-                       const Visibility& seen) {
+                       const PatchSet& patches, const Visibility& seen) {
   if (sky.uniform) return {uniform_light(seen.direct_over_pi.values), uniform_light(seen.patch_direct())};
   const SkyLightOptions rays{options.sky_rays, 0, sky.mean_radiance()};
   const Radiance radiance = [&](const glm::dvec3& d) { return sky.radiance(d); };
   ColoredLight light;
   light.texels = sky_light_of_texels(surface, seen.direct_over_pi.values, radiance, rays);
-  light.patches =
-      seen.patches.empty() ? light.texels : sky_light_of_facets(surface, seen.patch_direct(), radiance, rays);
+  light.patches = seen.patches.empty()
+                      ? light.texels
+                      : sky_light_of_patches(surface, patches, seen.patch_direct(), radiance, rays);
   return light;
 }
 
@@ -153,8 +154,12 @@ void relight(const RenderOptions& options, const BakeFile& file, const BakeOptio
   const Surface& surface = *wall.surface;
   const Visibility seen =
       options.links.empty() ? retrace(tracing) : visibility_from_links(options.links, file);
-  const bool facets = !seen.patches.empty();
-  ColoredLight light = sky_light(options, sky, surface, seen);
+  const bool on_facets = !seen.patches.empty();
+  const PatchSet patches = make_patches(surface, on_facets ? Patches::kFacets : Patches::kTexels);
+  if (seen.gather.columns != patches.count)
+    throw InputError(fmt::format("{}: has {} patches, expected {} as this version makes of the map",
+                                 options.links.string(), seen.gather.columns, patches.count));
+  ColoredLight light = sky_light(options, sky, surface, patches, seen);
   if (!sky.lat_long.empty())
     result.light["sky_projected_against_traced"] =
         json_from_error(error_of_projection(sky, surface, seen, options.sky_rays, light.texels));
@@ -164,13 +169,13 @@ void relight(const RenderOptions& options, const BakeFile& file, const BakeOptio
     add_sun(share, sun->irradiance, irradiance);
     wall.sun = as_grid(irradiance, surface);
     add_sun(share, sun->irradiance, light.texels);
-    add_sun(facets ? sun_share_of_facets(surface, sun->direction) : share, sun->irradiance, light.patches);
+    add_sun(on_facets ? sun_share_of_patches(surface, patches, sun->direction) : share, sun->irradiance,
+            light.patches);
   }
   const size_t stored = file.bake.irradiance.size();
-  wall.truth = relight_over_links(
-      seen, light, albedo_of_patches(surface, wall.albedo, facets ? Patches::kFacets : Patches::kTexels),
-      stored > 1 ? static_cast<int>(stored) - 1 : BakeOptions().bounces,
-      sky.uniform && !sun ? std::optional(kPi) : std::nullopt);
+  wall.truth = relight_over_links(seen, light, albedo_of_patches(surface, wall.albedo, patches),
+                                  stored > 1 ? static_cast<int>(stored) - 1 : BakeOptions().bounces,
+                                  sky.uniform && !sun ? std::optional(kPi) : std::nullopt);
 }
 
 }  // namespace

@@ -96,19 +96,19 @@ Relit relight_over_links(const Visibility& seen, const ColoredLight& direct,
   return relit;
 }
 
-std::vector<glm::vec3> albedo_of_patches(const Surface& surface, const Albedo& albedo, Patches patches) {
-  if (patches == Patches::kTexels) {
-    std::vector<glm::vec3> values(surface.texel_count());
-    for (size_t i = 0; i < values.size(); ++i) values[i] = albedo.at(i);
-    return values;
-  }
-  std::vector<glm::vec3> values(facet_count(surface), albedo.constant);
+std::vector<glm::vec3> albedo_of_patches(const Surface& surface, const Albedo& albedo,
+                                         const PatchSet& patches) {
+  std::vector<glm::vec3> values(patches.count, albedo.constant);
   if (albedo.map.empty()) return values;
-  for (uint32_t facet = 0; facet < values.size(); ++facet) {
-    glm::dvec3 sum(0);
-    for (const glm::ivec2& corner : facet_corners(surface, facet).texel)
-      sum += glm::dvec3(albedo.map(corner.x % surface.width(), corner.y % surface.height()));
-    values[facet] = glm::vec3(sum / 3.0);
+  if (patches.kind == Patches::kTexels) return albedo.map.values;
+  for (uint32_t patch = 0; patch < patches.count; ++patch) {
+    const FacetNode node = facet_node(patches, patch);
+    const glm::dvec2 uv = node_uv(node.subdivision, node.node);
+    const auto corners = facet_corners(surface, node.facet).texel;
+    const auto at = [&](int c) {
+      return glm::dvec3(albedo.map(corners[c].x % surface.width(), corners[c].y % surface.height()));
+    };
+    values[patch] = glm::vec3((1 - uv.x - uv.y) * at(0) + uv.x * at(1) + uv.y * at(2));
   }
   return values;
 }

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/grid.h"
+#include "surface/patches.h"
 #include "surface/surface.h"
-#include "tracers/tracer.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {
@@ -23,7 +23,7 @@ struct Albedo {
 // What arrives before any bounce.
 struct ColoredLight {
   std::vector<glm::dvec3> texels;   // irradiance at every texel
-  std::vector<glm::dvec3> patches;  // mean irradiance on every patch
+  std::vector<glm::dvec3> patches;  // and at every patch
 };
 
 struct Relit {
@@ -45,7 +45,8 @@ Relit relight_over_links(const Visibility& seen, const ColoredLight& direct,
                          const std::vector<glm::vec3>& patch_albedo, int bounces,
                          std::optional<double> most = {});
 
-// Albedo of every patch: of the texel itself, or the mean of a facet's corners.
-std::vector<glm::vec3> albedo_of_patches(const Surface& surface, const Albedo& albedo, Patches patches);
+// Albedo of every patch: of the texel itself, or between a facet's corners where the node is.
+std::vector<glm::vec3> albedo_of_patches(const Surface& surface, const Albedo& albedo,
+                                         const PatchSet& patches);
 
 }  // namespace hemibake

@@ -21,7 +21,7 @@ constexpr size_t kGrain = 256;
 constexpr double kLiftTexels = 1e-6;  // as the referee's: the walk cannot leak, rounding has to be cleared
 constexpr int kSunGrid = 4;           // points a side from which a receiver looks at the sun
 // Streams of mix_bits.
-constexpr uint64_t kTexelStream = 0x736b7954, kFacetStream = 0x736b7946;
+constexpr uint64_t kTexelStream = 0x736b7954, kPatchStream = 0x736b7950;
 
 // Texel x, y is the corner of a cell; on an open map the last ones are the far ends of theirs.
 struct GroundPoint {
@@ -92,6 +92,13 @@ SurfacePoint texel_center(const Surface& surface, size_t texel) {
           glm::dvec3(surface.normals[texel])};
 }
 
+// One of the points that a patch looks from; u in the unit square.
+SurfacePoint patch_start(const HeightWalk& walk, const PatchSet& patches, size_t patch, const glm::dvec2& u) {
+  const FacetNode node = facet_node(patches, static_cast<uint32_t>(patch));
+  const glm::dvec2 at = node_start_uv(node.subdivision, node.node, sample_uniform_triangle(u));
+  return walk.point_on_facet(node.facet, at.x, at.y);
+}
+
 // Shares of kSunGrid² points, in the middle of equal parts of the unit square.
 template <class SeenFrom>
 double share_of_points(const SeenFrom& seen_from) {
@@ -121,15 +128,13 @@ std::vector<glm::dvec3> sky_light_of_texels(const Surface& surface, std::span<co
                    [&](size_t texel, const glm::dvec2&) { return texel_center(surface, texel); });
 }
 
-std::vector<glm::dvec3> sky_light_of_facets(const Surface& surface, std::span<const float> direct_over_pi,
-                                            const Radiance& radiance, const SkyLightOptions& options) {
+std::vector<glm::dvec3> sky_light_of_patches(const Surface& surface, const PatchSet& patches,
+                                             std::span<const float> direct_over_pi, const Radiance& radiance,
+                                             const SkyLightOptions& options) {
+  expect_equal(direct_over_pi.size(), size_t{patches.count}, "patches given to sky_light_of_patches");
   const HeightWalk walk(surface);
-  expect_equal(direct_over_pi.size(), size_t{walk.facet_count()}, "facets given to sky_light_of_facets");
-  return sky_light(walk, direct_over_pi, radiance, options, kFacetStream,
-                   [&](size_t facet, const glm::dvec2& u) {
-                     const glm::dvec2 at = sample_uniform_triangle(u);
-                     return walk.point_on_facet(static_cast<uint32_t>(facet), at.x, at.y);
-                   });
+  return sky_light(walk, direct_over_pi, radiance, options, kPatchStream,
+                   [&](size_t patch, const glm::dvec2& u) { return patch_start(walk, patches, patch, u); });
 }
 
 std::vector<double> sun_share_of_texels(const Surface& surface, const glm::dvec3& direction) {
@@ -146,16 +151,16 @@ std::vector<double> sun_share_of_texels(const Surface& surface, const glm::dvec3
   });
 }
 
-std::vector<double> sun_share_of_facets(const Surface& surface, const glm::dvec3& direction) {
+std::vector<double> sun_share_of_patches(const Surface& surface, const PatchSet& patches,
+                                         const glm::dvec3& direction) {
   const HeightWalk walk(surface);
   const double lift = walk.start_lift(kLiftTexels);
-  return shares(walk.facet_count(), [&](size_t facet) {
-    const auto number = static_cast<uint32_t>(facet);
-    const double cosine = glm::dot(facet_normal(surface, number), direction);
+  return shares(patches.count, [&](size_t patch) {
+    const glm::dvec3 normal = patch_start(walk, patches, patch, {}).normal;
+    const double cosine = glm::dot(normal, direction);
     if (cosine <= 0) return 0.0;
     return cosine * share_of_points([&](const glm::dvec2& u) {
-             const glm::dvec2 at = sample_uniform_triangle(u);
-             return sees(walk, walk.point_on_facet(number, at.x, at.y), lift, direction);
+             return sees(walk, patch_start(walk, patches, patch, u), lift, direction);
            });
   });
 }

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "surface/patches.h"
 #include "surface/surface.h"
-#include "tracers/tracer.h"
 
 namespace hemibake {
 
@@ -28,13 +28,16 @@ struct SkyLightOptions {
 std::vector<glm::dvec3> sky_light_of_texels(const Surface& surface, std::span<const float> direct_over_pi,
                                             const Radiance& radiance, const SkyLightOptions& options);
 
-// The same per facet (surface/facets.h), averaged over its area.
-std::vector<glm::dvec3> sky_light_of_facets(const Surface& surface, std::span<const float> direct_over_pi,
-                                            const Radiance& radiance, const SkyLightOptions& options);
+// The same per patch on facets (surface/patches.h), about the facet's normal.
+std::vector<glm::dvec3> sky_light_of_patches(const Surface& surface, const PatchSet& patches,
+                                             std::span<const float> direct_over_pi, const Radiance& radiance,
+                                             const SkyLightOptions& options);
 
 // max(0, n·ω) times the share of the receiver from which the surface does not hide the direction (unit).
-// Texels: over their square of the ground, so that shadows have smooth edges; facets: over their area.
+// Texels: over their square of the ground, so that shadows have smooth edges; patches: over where they look
+// from.
 std::vector<double> sun_share_of_texels(const Surface& surface, const glm::dvec3& direction);
-std::vector<double> sun_share_of_facets(const Surface& surface, const glm::dvec3& direction);
+std::vector<double> sun_share_of_patches(const Surface& surface, const PatchSet& patches,
+                                         const glm::dvec3& direction);
 
 }  // namespace hemibake

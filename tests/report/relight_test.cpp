@@ -72,8 +72,9 @@ TEST_F(RelightWall, ConstantMapIsPowersOfAlbedo) {
   const glm::vec3 albedo(0.9f, 0.6f, 0);
   const Relit powers = relight_constant(bounce_light(seen(), {}).irradiance, albedo);
   const Albedo map{glm::vec3(0), Grid<glm::vec3>(24, 20, albedo)};
-  const Relit over_links = relight_over_links(seen(), uniform_light(),
-                                              albedo_of_patches(surface(), map, Patches::kFacets), 20, kPi);
+  const Relit over_links = relight_over_links(
+      seen(), uniform_light(), albedo_of_patches(surface(), map, make_patches(surface(), Patches::kFacets)),
+      20, kPi);
   ASSERT_EQ(powers.bounces.size(), over_links.bounces.size());
   for (size_t b = 0; b < powers.bounces.size(); ++b)
     for (size_t i = 0; i < powers.total.size(); ++i)
@@ -120,16 +121,22 @@ TEST(Relight, RestOfASeriesIsExact) {
   EXPECT_EQ(relight_constant(irradiance, glm::vec3(1)).largest_rest, 0) << "one bounce is no series";
 }
 
-TEST(Relight, FacetsHaveTheMeanOfTheirCorners) {
+TEST(Relight, PatchesHaveTheAlbedoBetweenTheTexels) {
   const Surface surface = make_surface(Grid<float>(3, 3), 1, 0, Edge::kWrap);
   Albedo albedo;
   albedo.map = Grid<glm::vec3>(3, 3);
   albedo.map(2, 2) = glm::vec3(0.9f, 0.3f, 0);
-  const auto facets = albedo_of_patches(surface, albedo, Patches::kFacets);
-  EXPECT_FLOAT_EQ(facets[2 * 8].x, 0.3f) << "corner of the last cell";
-  EXPECT_FLOAT_EQ(facets[2 * 4 + 1].y, 0.1f) << "far corner of the middle cell";
-  EXPECT_EQ(facets[0].x, 0);
-  EXPECT_EQ(albedo_of_patches(surface, albedo, Patches::kTexels)[8].x, 0.9f);
+  // A tent of height 1 over texel 2,2: linear over the ground, 1 − the distance along x, y or the diagonal.
+  const PatchSet nodes = make_patches(surface, Patches::kFacets);
+  const auto values = albedo_of_patches(surface, albedo, nodes);
+  for (uint32_t patch = 0; patch < nodes.count; ++patch) {
+    const glm::dvec2 at = patch_position_texels(surface, nodes, patch) - 2.0;
+    const double x = at.x < -1.5 ? at.x + 3 : at.x, y = at.y < -1.5 ? at.y + 3 : at.y;
+    const double tent = std::max(0.0, 1 - std::max({std::abs(x), std::abs(y), std::abs(x + y)}));
+    EXPECT_NEAR(values[patch].x, 0.9 * tent, 1e-6) << at.x << ' ' << at.y;
+    EXPECT_NEAR(values[patch].y, 0.3 * tent, 1e-6);
+  }
+  EXPECT_EQ(albedo_of_patches(surface, albedo, make_patches(surface, Patches::kTexels))[8].x, 0.9f);
 }
 
 // AO darkens the sky's light only: a sun adds the same to every picture.
