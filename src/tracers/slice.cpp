@@ -42,8 +42,9 @@ constexpr uint32_t kNoFacet = 0xffffffff;
 struct AskedPacket {
   SlicePacket packet;
   int first_lane, end_lane;
-  uint32_t receiver;  // of lane 0; the next lane's is `step` more
-  uint32_t step;
+  uint32_t facet;  // of the first lane asked for, the next lane's is 2 more; kNoFacet for texels
+  size_t row;      // its row, the next lane's is `row_step` more
+  size_t row_step;
 };
 
 class SliceTracer final : public Tracer {
@@ -61,6 +62,8 @@ class SliceTracer final : public Tracer {
   }
   void trace_texels(uint32_t first, bool with_links, std::span<Row> rows,
                     TracerCounts& counts) const override;
+  void trace_tile(uint32_t map_width, const TexelTile& tile, std::span<Row> rows,
+                  TracerCounts& counts) const override;
   void trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
                      TracerCounts& counts) const override;
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
@@ -74,8 +77,9 @@ class SliceTracer final : public Tracer {
   SlicePacket facet_packet(int column, int row, int half) const;
   std::vector<PacketView> look(const SlicePaths& paths, WalkFor what,
                                std::span<const SlicePacket> packets) const;
-  void answer(const SlicePaths& paths, bool of_facets, bool with_links, std::span<const AskedPacket> asked,
-              uint32_t first, std::span<Row> rows, TracerCounts& counts) const;
+  void ask_texels(uint32_t first, uint32_t count, size_t row, std::vector<AskedPacket>& asked) const;
+  void answer(const SlicePaths& paths, bool with_links, std::span<const AskedPacket> asked,
+              std::span<Row> rows, TracerCounts& counts) const;
   void clip_to_max_distance(const SlicePaths& paths, const SlicePacket& packet, PacketView& view) const;
   void fill_row(const SlicePaths& paths, const SlicePacket& packet, const PacketView& view, size_t lane,
                 uint32_t own_facet, bool with_links, Row& row, TracerCounts& counts) const;
@@ -243,38 +247,53 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
   merge_links(row);
 }
 
-// Fills the rows of all receivers asked for; `first` is the receiver of rows[0].
-void SliceTracer::answer(const SlicePaths& paths, bool of_facets, bool with_links,
-                         std::span<const AskedPacket> asked, uint32_t first, std::span<Row> rows,
-                         TracerCounts& counts) const {
+// Fills the rows of all receivers asked for.
+void SliceTracer::answer(const SlicePaths& paths, bool with_links, std::span<const AskedPacket> asked,
+                         std::span<Row> rows, TracerCounts& counts) const {
   const size_t together = with_links ? kPacketsWithLinks : kPacketsTogether;
   for (size_t begin = 0; begin < asked.size(); begin += together) {
     const auto piece = asked.subspan(begin, std::min(together, asked.size() - begin));
     std::vector<SlicePacket> packets;
     for (const AskedPacket& one : piece) packets.push_back(one.packet);
     const std::vector<PacketView> views = look(paths, with_links ? WalkFor::kHits : WalkFor::kSky, packets);
-    for (size_t i = 0; i < piece.size(); ++i)
-      for (int lane = piece[i].first_lane; lane < piece[i].end_lane; ++lane) {
-        const uint32_t receiver = piece[i].receiver + piece[i].step * static_cast<uint32_t>(lane);
-        fill_row(paths, packets[i], views[i], static_cast<size_t>(lane), of_facets ? receiver : kNoFacet,
-                 with_links, rows[receiver - first], counts);
+    for (size_t i = 0; i < piece.size(); ++i) {
+      const AskedPacket& one = piece[i];
+      for (int lane = one.first_lane; lane < one.end_lane; ++lane) {
+        const uint32_t number = static_cast<uint32_t>(lane - one.first_lane);
+        const uint32_t own_facet = one.facet == kNoFacet ? kNoFacet : one.facet + 2 * number;
+        fill_row(paths, packets[i], views[i], static_cast<size_t>(lane), own_facet, with_links,
+                 rows[one.row + one.row_step * number], counts);
       }
+    }
+  }
+}
+
+// Asks for the texels first, first + 1, …; `row` is the first one's.
+void SliceTracer::ask_texels(uint32_t first, uint32_t count, size_t row,
+                             std::vector<AskedPacket>& asked) const {
+  const uint32_t width = static_cast<uint32_t>(surface_.width()), end = first + count;
+  for (uint32_t texel = first; texel < end;) {
+    const int x = static_cast<int>(texel % width), lane = x % kSliceLanes;
+    const SlicePacket packet = texel_packet(x - lane, static_cast<int>(texel / width));
+    const int lanes = std::min(packet.lanes - lane, static_cast<int>(end - texel));
+    asked.push_back({packet, lane, lane + lanes, kNoFacet, row + (texel - first), 1});
+    texel += static_cast<uint32_t>(lanes);
   }
 }
 
 void SliceTracer::trace_texels(uint32_t first, bool with_links, std::span<Row> rows,
                                TracerCounts& counts) const {
-  const uint32_t width = static_cast<uint32_t>(surface_.width()),
-                 end = first + static_cast<uint32_t>(rows.size());
   std::vector<AskedPacket> asked;
-  for (uint32_t texel = first; texel < end;) {
-    const int x = static_cast<int>(texel % width), lane = x % kSliceLanes;
-    const SlicePacket packet = texel_packet(x - lane, static_cast<int>(texel / width));
-    const int count = std::min(packet.lanes - lane, static_cast<int>(end - texel));
-    asked.push_back({packet, lane, lane + count, texel - static_cast<uint32_t>(lane), 1});
-    texel += static_cast<uint32_t>(count);
-  }
-  answer(texel_paths_, false, with_links, asked, first, rows, counts);
+  ask_texels(first, static_cast<uint32_t>(rows.size()), 0, asked);
+  answer(texel_paths_, with_links, asked, rows, counts);
+}
+
+void SliceTracer::trace_tile(uint32_t map_width, const TexelTile& tile, std::span<Row> rows,
+                             TracerCounts& counts) const {
+  std::vector<AskedPacket> asked;
+  for (uint32_t j = 0; j < tile.height; ++j)
+    ask_texels((tile.y + j) * map_width + tile.x, tile.width, size_t{j} * tile.width, asked);
+  answer(texel_paths_, false, asked, rows, counts);
 }
 
 void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
@@ -288,11 +307,12 @@ void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> 
       const int column = static_cast<int>(cell % columns), lane = column % kSliceLanes;
       const SlicePacket packet =
           facet_packet(column - lane, static_cast<int>(cell / columns), static_cast<int>(half));
-      const int count = std::min(packet.lanes - lane, static_cast<int>(end_cell - cell));
-      asked.push_back({packet, lane, lane + count, 2 * (cell - static_cast<uint32_t>(lane)) + half, 2});
-      cell += static_cast<uint32_t>(count);
+      const int lanes = std::min(packet.lanes - lane, static_cast<int>(end_cell - cell));
+      const uint32_t facet = 2 * cell + half;
+      asked.push_back({packet, lane, lane + lanes, facet, facet - first, 2});
+      cell += static_cast<uint32_t>(lanes);
     }
-    answer(facet_paths_[half], true, with_links, asked, first, rows, counts);
+    answer(facet_paths_[half], with_links, asked, rows, counts);
   }
 }
 
