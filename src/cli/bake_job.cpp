@@ -164,7 +164,7 @@ BakeResult perform_bake(const BakeJob& job) {
   result.trace_cpu_seconds = process_cpu_seconds() - cpu_start;
   record_tracing(seen, result.provenance);
   if (!seen.gather.empty()) {
-    result.link_energy = measure_link_energy(job.map.surface, seen);
+    result.link_energy = measure_link_energy(job.map.surface, job.tracer->patches(), seen);
     record_link_energy(*result.link_energy, result.provenance);
   }
 

@@ -54,7 +54,7 @@ class MarchTracer final : public Tracer {
  public:
   MarchTracer(const Surface& surface, MarchOptions options);
 
-  uint32_t patch_count() const override { return surface_.texel_count(); }
+  const PatchSet& patches() const override { return patches_; }
   void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const override;
   void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const override {
     trace_texel(patch, with_links, row, counts);
@@ -72,6 +72,7 @@ class MarchTracer final : public Tracer {
 
   // Lengths in texels from here on; heights count from height-map value 0.
   const Surface& surface_;
+  PatchSet patches_;
   const MarchOptions options_;
   const bool wrap_, round_weights_;
   std::vector<WeightedDirection> rays_;
@@ -81,6 +82,7 @@ class MarchTracer final : public Tracer {
 
 MarchTracer::MarchTracer(const Surface& surface, MarchOptions options)
     : surface_(surface),
+      patches_(make_patches(surface, Patches::kTexels)),
       options_(std::move(options)),
       wrap_(surface.edge == Edge::kWrap),
       round_weights_(options_.lookup == MarchLookup::kPublished),

@@ -1,8 +1,8 @@
 // What a tracer answers: how much sky a receiver sees, how much light that is, and which patches block the
 // rest.
 //
-// Receivers are texels (with their shading normals) and patches; patches are what light is re-emitted by:
-// facets of the surface (surface/facets.h), or the texels themselves, with the same index as the texel.
+// Receivers are texels (with their shading normals) and patches (surface/patches.h), what light is re-emitted
+// by: nodes on the facets of the surface, or the texels themselves, with the same index as the texel.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 #include <span>
 #include <vector>
 
-namespace hemibake {
+#include "surface/patches.h"
 
-enum class Patches { kFacets, kTexels };
+namespace hemibake {
 
 // E_{b+1} of the receiver gets weight · E_b of the patch.
 struct Link {
@@ -56,7 +56,7 @@ struct TexelTile {
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  virtual uint32_t patch_count() const = 0;
+  virtual const PatchSet& patches() const = 0;
   // Fills `row`, its links only if `with_links`. Adds to `counts`.
   virtual void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const = 0;
   virtual void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const = 0;

@@ -64,7 +64,7 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
   // under way for texels and patches.
   plan.plane_bytes = texels * 20;
   if (options.with_links) {
-    const size_t patches = options.patches == Patches::kFacets ? 2 * texels : texels;
+    const size_t patches = make_patches(surface, options.patches).count;
     plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 3) + 32) + patches * 36;
   }
   return plan;
@@ -80,7 +80,7 @@ BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptio
     const auto of_patches = [&](uint32_t patch, Row& row, TracerCounts& counts) {
       tracer.trace_patch(patch, true, row, counts);
     };
-    add_pilot(trace_pilot(tracer.patch_count(), of_patches), tracer.patch_count(), plan);
+    add_pilot(trace_pilot(tracer.patches().count, of_patches), tracer.patches().count, plan);
   }
   if (!options.with_links) plan.link_bytes = 0;
   plan.bounce_cpu_seconds = static_cast<double>(plan.links) * options.bounces * kSecondsPerLink;

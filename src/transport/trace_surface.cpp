@@ -51,7 +51,7 @@ TracerCounts trace_blocks(uint32_t row_count, Links& links, Progress& progress, 
       }
       links.blocks[b].patches.shrink_to_fit();
       links.blocks[b].weights.shrink_to_fit();
-      progress.advance(counts[b].rays);
+      progress.advance(block_rows.size());
     }
   });
   return sum(counts);
@@ -79,7 +79,7 @@ TracerCounts trace_tiles(const Tracer& tracer, uint32_t width, uint32_t height, 
           check_row(texel, row);
           store(texel, row);
         }
-      progress.advance(counts[t].rays);
+      progress.advance(size_t{tile.width} * tile.height);
     }
   });
   return sum(counts);
@@ -95,12 +95,8 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
   const uint32_t texels = static_cast<uint32_t>(seen.visible_fraction.size());
   const bool trace_patches = with_links && patches == Patches::kFacets;
 
-  // One row tells how many rays a receiver takes.
-  Row first_row;
-  TracerCounts first_counts;
-  tracer.trace_texel(0, false, first_row, first_counts);
-  const uint64_t receivers = texels + uint64_t{trace_patches ? tracer.patch_count() : 0};
-  Progress progress("tracing", receivers * first_counts.rays, "ray");
+  const uint32_t patch_count = tracer.patches().count;
+  Progress progress("tracing", uint64_t{texels} + (trace_patches ? patch_count : 0), "receiver");
 
   const auto store_texel = [&](uint32_t texel, const Row& row) {
     seen.visible_fraction[texel] = static_cast<float>(row.visible_fraction);
@@ -112,7 +108,7 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
                               store_texel);
     return seen;
   }
-  seen.gather = make_links(texels, tracer.patch_count());
+  seen.gather = make_links(texels, patch_count);
   seen.counts = trace_blocks(
       texels, seen.gather, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
@@ -121,10 +117,10 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
       store_texel);
   if (!trace_patches) return seen;
 
-  seen.patches = make_links(tracer.patch_count(), tracer.patch_count());
-  seen.patch_direct_over_pi.resize(tracer.patch_count());
+  seen.patches = make_links(patch_count, patch_count);
+  seen.patch_direct_over_pi.resize(patch_count);
   const TracerCounts of_patches = trace_blocks(
-      tracer.patch_count(), seen.patches, progress,
+      patch_count, seen.patches, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_patches(first, true, rows, counts);
       },

@@ -26,7 +26,8 @@ TEST_F(Plan, SaysTheMemoryTheBakeThenTakes) {
   const double ratio = bake.at("peak_memory_bytes").get<double>() / plan.at("memory_bytes").get<double>();
   EXPECT_GT(ratio, 0.5);
   EXPECT_LT(ratio, 2.0);
-  EXPECT_EQ(bake.at("rays_traced"), plan.at("rays"));
+  // Nodes of coarse and fine facets take a different number of rays each; the pilot knows their mix.
+  EXPECT_NEAR(bake.at("rays_traced").get<double>() / plan.at("rays").get<double>(), 1, 0.01);
   // Four standard errors of some hundred rows are a few percent.
   EXPECT_NEAR(bake.at("links").get<double>() / plan.at("links").get<double>(), 1, 0.1);
 }
