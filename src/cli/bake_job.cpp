@@ -93,6 +93,36 @@ void record_bounces(const Bounces& bounces, Provenance& p) {
   p["texels_closed"] = bounces.texels_closed.size();
 }
 
+TargetOptions target_options(const BakeJob& job) {
+  TargetOptions target;
+  target.error = *job.options.target_error;
+  target.patches = patches_of(job.options);
+  target.with_light = job.options.needs_links() && job.options.wants("irradiance");
+  if (job.options.tracer == "embree") target.fewest_rays = 16;
+  target.seed = job.options.seed;
+  target.make_tracer = [&job](int rays, uint64_t seed) {
+    BakeOptions options = job.options;
+    options.rays = rays;
+    options.seed = seed;
+    return make_tracer(options, job.map);
+  };
+  return target;
+}
+
+void choose_rays_and_bounces(BakeJob& job) {
+  job.choice = choose_for_target(job.map.surface, target_options(job));
+  job.options.rays = job.choice->rays;
+  if (job.choice->bounces > 0) job.options.bounces = job.choice->bounces;
+}
+
+void record_reached(const BakeOptions& options, const TargetErrors& reached, Provenance& p) {
+  p["target_error"] = *options.target_error;
+  p["reached_error_ao"] = reached.ao;
+  p["reached_error_direct"] = reached.direct;
+  for (size_t a = 0; options.wants("irradiance") && a < kTradeAlbedos.size(); ++a)
+    p[fmt::format("reached_error_albedo_{:g}", kTradeAlbedos[a])] = reached.light[a];
+}
+
 std::string name_texels(const std::vector<uint32_t>& texels, int width) {
   std::string names;
   for (size_t i = 0; i < std::min(texels.size(), kTexelsNamed); ++i)
@@ -149,7 +179,8 @@ void prepare_bake(const BakeOptions& options, bool only_plan, BakeJob& job) {
   job.map = load_bake_map(options);
   // Twice: before the scene is built, which may be too large already, and with the links a pilot finds.
   if (!only_plan) refuse_beyond_memory(job, plan_planes(job.map.surface, plan_options(job)));
-  job.tracer = make_tracer(options, job.map);
+  if (options.target_error) choose_rays_and_bounces(job);
+  job.tracer = make_tracer(job.options, job.map);
   job.plan = plan_bake(job.map.surface, *job.tracer, plan_options(job));
   if (!only_plan) refuse_beyond_memory(job, job.plan);
 }
@@ -178,6 +209,10 @@ BakeResult perform_bake(const BakeJob& job) {
                   : direct_light(seen);
     record_bounces(bounces, result.provenance);
   }
+  if (options.target_error) {
+    result.reached = measure_reached(job.map.surface, seen, options.bounces, target_options(job));
+    record_reached(options, *result.reached, result.provenance);
+  }
   if (!options.links.empty())
     write_links(options.links, seen.gather, seen.patches.empty() ? nullptr : &seen.patches,
                 irradiance_of(seen.patch_direct()), result.provenance);
@@ -199,6 +234,13 @@ std::string describe_bake(const BakeJob& job, const BakeResult& result) {
   if (result.provenance.contains("links"))
     text += fmt::format(", {:.1f} M links", 1e-6 * result.provenance["links"].get<double>());
   text += fmt::format(", peak memory {:.2f} GiB\n", static_cast<double>(peak_memory_bytes()) / kGib);
+  if (job.choice && job.options.explain) text += explain(*job.choice, target_options(job));
+  if (result.reached)
+    text += fmt::format(
+        "reached   rms error {:.5f} of the {:g} wanted, with {} rays{}: AO {:.5f}, E0/pi {:.5f}\n",
+        result.reached->worst(), *job.options.target_error, job.options.rays,
+        job.choice->bounces > 0 ? fmt::format(" and {} bounces", job.choice->bounces) : "",
+        result.reached->ao, result.reached->direct);
   if (!bake.visible_fraction.empty())
     text += fmt::format("ao        mean {:.5f}\n", mean_of(bake.visible_fraction));
   if (!bake.irradiance.empty()) {
@@ -231,6 +273,7 @@ nlohmann::ordered_json json_from_bake(const BakeJob& job, const BakeResult& resu
     json["mean_irradiance_over_pi"] = means;
     json["mean_total_over_pi"] = mean_of(result.bake.total) / kPi;
   }
+  if (job.choice) json["choice"] = json_from_choice(*job.choice);
   json["warnings"] = result.warnings;
   return json;
 }
@@ -238,13 +281,16 @@ nlohmann::ordered_json json_from_bake(const BakeJob& job, const BakeResult& resu
 std::string describe_plan(const BakeJob& job) {
   const BakePlan& plan = job.plan;
   const auto gib = [](size_t bytes) { return static_cast<double>(bytes) / kGib; };
-  return fmt::format(
-      "memory    {:.3f} GiB: program {:.3f}, surface and scene {:.3f}, links {:.3f}, planes {:.3f}\n"
-      "work      {:.1f} M rays, {:.1f} M links, {} bounces: about {:.0f} cpu-s tracing, {:.0f} cpu-s "
-      "bouncing\n",
-      gib(plan.memory_bytes()), gib(BakePlan::kProgramBytes), gib(plan.surface_bytes), gib(plan.link_bytes),
-      gib(plan.plane_bytes), 1e-6 * static_cast<double>(plan.rays), 1e-6 * static_cast<double>(plan.links),
-      job.options.bounces, plan.trace_cpu_seconds, plan.bounce_cpu_seconds);
+  const std::string reasons = job.choice ? explain(*job.choice, target_options(job)) : "";
+  return reasons +
+         fmt::format(
+             "memory    {:.3f} GiB: program {:.3f}, surface and scene {:.3f}, links {:.3f}, planes {:.3f}\n"
+             "work      {:.1f} M rays, {:.1f} M links, {} bounces: about {:.0f} cpu-s tracing, {:.0f} cpu-s "
+             "bouncing\n",
+             gib(plan.memory_bytes()), gib(BakePlan::kProgramBytes), gib(plan.surface_bytes),
+             gib(plan.link_bytes), gib(plan.plane_bytes), 1e-6 * static_cast<double>(plan.rays),
+             1e-6 * static_cast<double>(plan.links), job.options.bounces, plan.trace_cpu_seconds,
+             plan.bounce_cpu_seconds);
 }
 
 nlohmann::ordered_json json_from_plan(const BakeJob& job) {

@@ -10,6 +10,7 @@
 #include "cli/bake_surface.h"
 #include "io/provenance.h"
 #include "tracers/tracer.h"
+#include "trade/target_error.h"
 #include "transport/bake.h"
 #include "transport/energy.h"
 #include "transport/plan.h"
@@ -22,6 +23,7 @@ struct BakeJob {
   BakeMap map;
   std::unique_ptr<Tracer> tracer;
   BakePlan plan;
+  std::optional<TargetChoice> choice;  // with --target-error; `options` hold what it chose
 
   BakeJob() = default;
   BakeJob(const BakeJob&) = delete;
@@ -36,6 +38,7 @@ struct BakeResult {
   Bake bake;
   Provenance provenance;
   std::optional<LinkEnergy> link_energy;
+  std::optional<TargetErrors> reached;  // with --target-error
   // For the person at the terminal.
   uint64_t rays = 0;
   double seconds = 0, cpu_seconds = 0, trace_cpu_seconds = 0;
