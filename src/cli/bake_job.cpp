@@ -20,7 +20,8 @@ namespace hemibake {
 namespace {
 
 constexpr double kGib = 1024.0 * 1024 * 1024;
-constexpr size_t kTexelsNamed = 5;  // of those that did not converge
+constexpr uint64_t kAnotherSeed = 0x5eed;  // more than the user's
+constexpr size_t kTexelsNamed = 5;         // of those that did not converge
 
 PlanOptions plan_options(const BakeJob& job) {
   PlanOptions plan;
@@ -123,6 +124,31 @@ void record_reached(const BakeOptions& options, const TargetErrors& reached, Pro
     p[fmt::format("reached_error_albedo_{:g}", kTradeAlbedos[a])] = reached.light[a];
 }
 
+void record_errors(const ErrorEstimate& errors, Provenance& p) {
+  p["error_ao_rays"] = errors.ao_rays;
+  p["error_direct_rays"] = errors.direct_rays;
+  p["error_first_rays"] = errors.first_rays;
+  p["error_mean_direct_rays"] = errors.mean_direct_rays;
+  p["error_mean_first_rays"] = errors.mean_first_rays;
+  p["error_mean_first_patches"] = errors.first_patches;
+  p["error_mean_half_patches"] = errors.half_patches;
+  p["error_mean_total_bounces"] = errors.total_bounces;
+  p["error_mean_half_bounces"] = errors.half_bounces;
+  p["error_far_horizon"] = errors.far_horizon;
+  p["error_curve_direct_rays"] = errors.curve_direct;
+  p["error_curve_first_rays"] = errors.curve_first;
+}
+
+std::string describe_errors(const ErrorEstimate& e) {
+  return fmt::format(
+      "errors    of a texel (rms, rays): ao {:.2g}, E0/pi {:.2g}, E1/pi {:.2g}; of the means: E0/pi {:.1g} "
+      "rays, "
+      "E1/pi {:.1g} rays + {:.1g} patches, all at albedo 0.5 {:.1g} patches + {:.1g} bounces, at 1 {:.1g} "
+      "bounces; far horizon {:.1g}; of the curves: E0/pi {:.1g}, E1/pi {:.1g}\n",
+      e.ao_rays, e.direct_rays, e.first_rays, e.mean_direct_rays, e.mean_first_rays, e.first_patches,
+      e.half_patches, e.half_bounces, e.total_bounces, e.far_horizon, e.curve_direct, e.curve_first);
+}
+
 std::string name_texels(const std::vector<uint32_t>& texels, int width) {
   std::string names;
   for (size_t i = 0; i < std::min(texels.size(), kTexelsNamed); ++i)
@@ -208,6 +234,10 @@ BakeResult perform_bake(const BakeJob& job) {
                   ? bounce_light(seen, {options.bounces, options.converge, options.max_bounces})
                   : direct_light(seen);
     record_bounces(bounces, result.provenance);
+    if (!seen.gather.empty() && bounces.irradiance.size() > 1) {
+      result.errors = estimate_errors(*job.tracer->reseeded(options.seed + kAnotherSeed), seen, bounces);
+      record_errors(*result.errors, result.provenance);
+    }
   }
   if (options.target_error) {
     result.reached = measure_reached(job.map.surface, seen, options.bounces, target_options(job));
@@ -254,6 +284,7 @@ std::string describe_bake(const BakeJob& job, const BakeResult& result) {
         mean_of(bake.total) / kPi, result.provenance["bounces_made"].get<int>(),
         result.provenance["mean_residual"].get<double>(), result.provenance["worst_residual"].get<double>());
   }
+  if (result.errors) text += describe_errors(*result.errors);
   return text;
 }
 

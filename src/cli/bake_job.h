@@ -13,6 +13,7 @@
 #include "trade/target_error.h"
 #include "transport/bake.h"
 #include "transport/energy.h"
+#include "transport/error_estimate.h"
 #include "transport/plan.h"
 
 namespace hemibake {
@@ -39,6 +40,7 @@ struct BakeResult {
   Provenance provenance;
   std::optional<LinkEnergy> link_energy;
   std::optional<TargetErrors> reached;  // with --target-error
+  std::optional<ErrorEstimate> errors;  // with links and a bounce
   // For the person at the terminal.
   uint64_t rays = 0;
   double seconds = 0, cpu_seconds = 0, trace_cpu_seconds = 0;

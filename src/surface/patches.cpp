@@ -40,23 +40,6 @@ NodePlace node_place(int k, uint32_t node) {
   return {a, b};
 }
 
-uint32_t node_at(int k, int a, int b) { return static_cast<uint32_t>(b * (k + 1) - b * (b - 1) / 2 + a); }
-
-// Of the nodes around a point, with `choice`: the one whose light stands for the point's.
-uint32_t draw_node(int k, glm::dvec2 uv, double choice) {
-  const double u = std::clamp(uv.x, 0.0, 1.0) * k, v = std::clamp(uv.y, 0.0, 1.0) * k;
-  const int a = std::min(static_cast<int>(u), k - 1), b = std::min(static_cast<int>(v), k - 1 - a);
-  const double fu = u - a, fv = std::min(v - b, 1.0);
-  // The half of the little square at (a, b) that is a triangle like the facet, or the other way round. On the
-  // facet's long side there is only the first kind, whatever fu + fv rounds to.
-  if (fu + fv <= 1 || a + b == k - 1) {
-    if (choice < fu) return node_at(k, a + 1, b);
-    return choice < fu + fv ? node_at(k, a, b + 1) : node_at(k, a, b);
-  }
-  if (choice < 1 - fu) return node_at(k, a, b + 1);
-  return choice < 2 - fu - fv ? node_at(k, a + 1, b) : node_at(k, a + 1, b + 1);
-}
-
 }  // namespace
 
 PatchSet make_patches(const Surface& surface, Patches kind) {
@@ -113,10 +96,32 @@ FacetNode facet_node(const PatchSet& patches, uint32_t patch) {
   return {2 * cell + half_and_node / nodes, run.subdivision, half_and_node % nodes};
 }
 
-uint32_t draw_patch(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double choice) {
+std::array<PatchShare, 3> patch_shares(const PatchSet& patches, uint32_t facet, glm::dvec2 uv) {
   const uint32_t cell = facet / 2, row = cell / patches.columns, column = cell % patches.columns;
   const PatchRun run = patch_run(patches, row * patches.runs_in_row + column / kRunCells);
-  return run.patch(facet % 2, draw_node(run.subdivision, uv, choice), column % kRunCells);
+  const int k = run.subdivision;
+  const double u = std::clamp(uv.x, 0.0, 1.0) * k, v = std::clamp(uv.y, 0.0, 1.0) * k;
+  const int a = std::min(static_cast<int>(u), k - 1), b = std::min(static_cast<int>(v), k - 1 - a);
+  const double fu = u - a, fv = std::min(v - b, 1.0);
+  const auto patch_at = [&](int column_of_node, int row_of_node) {
+    return run.patch(facet % 2, node_at(k, column_of_node, row_of_node), column % kRunCells);
+  };
+  // The half of the little square at (a, b) that is a triangle like the facet, or the other way round. On the
+  // facet's long side there is only the first kind, whatever fu + fv rounds to.
+  if (fu + fv <= 1 || a + b == k - 1) {
+    const double share_u = std::min(fu, 1.0), share_v = std::min(fv, 1 - share_u);
+    return {{{patch_at(a + 1, b), share_u},
+             {patch_at(a, b + 1), share_v},
+             {patch_at(a, b), 1 - share_u - share_v}}};
+  }
+  return {
+      {{patch_at(a, b + 1), 1 - fu}, {patch_at(a + 1, b), 1 - fv}, {patch_at(a + 1, b + 1), fu + fv - 1}}};
+}
+
+uint32_t draw_patch(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double choice) {
+  const std::array<PatchShare, 3> shares = patch_shares(patches, facet, uv);
+  if (choice < shares[0].share) return shares[0].patch;
+  return choice < shares[0].share + shares[1].share ? shares[1].patch : shares[2].patch;
 }
 
 glm::dvec2 node_start_uv(int k, uint32_t node, glm::dvec2 point) {

@@ -12,6 +12,7 @@
 // first bounce 1 to 2 % off on rough maps, k = 6 brings no more than 0.1 % over k = 4.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <vector>
@@ -50,6 +51,10 @@ struct FacetNode {
   uint32_t node;    // 0 … node_count(k) − 1
 };
 glm::dvec2 node_uv(int k, uint32_t node);
+// The node at u = column/k, v = row/k.
+constexpr uint32_t node_at(int k, int column, int row) {
+  return static_cast<uint32_t>(row * (k + 1) - row * (row - 1) / 2 + column);
+}
 
 // Sixteen neighbours, or what is left of them at the end of a row.
 struct PatchRun {
@@ -67,8 +72,15 @@ PatchRun run_of_patch(const PatchSet& patches, uint32_t patch);
 
 FacetNode facet_node(const PatchSet& patches, uint32_t patch);
 
-// One of the up to three patches whose light makes up the light at `uv` of a facet, drawn with their share by
-// `choice` in [0, 1): over many hits the same as a link to each, at a third of the links.
+// The patches whose light makes up the light at `uv` of a facet, with their shares: not negative, sum 1.
+struct PatchShare {
+  uint32_t patch;
+  double share;
+};
+std::array<PatchShare, 3> patch_shares(const PatchSet& patches, uint32_t facet, glm::dvec2 uv);
+
+// One of them, drawn with its share by `choice` in [0, 1): over many hits the same as a link to each, at a
+// third of the links.
 uint32_t draw_patch(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double choice);
 
 // Where on its facet a node looks from: in a small copy of the facet at the node. A point exactly on a corner

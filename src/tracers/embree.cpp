@@ -42,11 +42,15 @@ struct SurfaceHit {
 class EmbreeTracer final : public Tracer {
  public:
   EmbreeTracer(const Surface& surface, const RayOptions& options);
+  EmbreeTracer(const EmbreeTracer& other, uint64_t seed);
   ~EmbreeTracer() override;
 
   const PatchSet& patches() const override { return patches_; }
   void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const override;
   void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const override;
+  std::unique_ptr<Tracer> reseeded(uint64_t seed) const override {
+    return std::make_unique<EmbreeTracer>(*this, seed);
+  }
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
 
  private:
@@ -63,6 +67,7 @@ class EmbreeTracer final : public Tracer {
   };
 
   static NodeRays make_node_rays(int rays);
+  EmbreeTracer(const EmbreeTracer&) = default;
   void build_scene();
   glm::vec3 texel_start(uint32_t texel) const;
   FloatFrame texel_frame(uint32_t texel) const;
@@ -133,6 +138,12 @@ EmbreeTracer::NodeRays EmbreeTracer::make_node_rays(int rays) {
     result.points.emplace_back(radical_inverse(3, i), radical_inverse(5, i));
   }
   return result;
+}
+
+EmbreeTracer::EmbreeTracer(const EmbreeTracer& other, uint64_t seed) : EmbreeTracer(other) {
+  options_.seed = seed;
+  rtcRetainDevice(device_);
+  rtcRetainScene(scene_);
 }
 
 EmbreeTracer::~EmbreeTracer() {
@@ -316,7 +327,7 @@ EmbreeTracer::FloatFrame EmbreeTracer::texel_frame(uint32_t texel) const {
 void EmbreeTracer::add_links(const SurfaceHit& hit, double weight, double choice,
                              std::vector<Link>& links) const {
   if (options_.patches == Patches::kFacets) {
-    links.push_back({draw_patch(patches_, hit.facet, {hit.u, hit.v}, choice), static_cast<float>(weight)});
+    add_node_links(patches_, hit.facet, {hit.u, hit.v}, hit.distance_texels, choice, weight, links);
   } else if (options_.texel_links == TexelLinks::kNearest) {
     add_nearest_link(surface_, hit_position_texels(hit), weight, links);
   } else {

@@ -59,6 +59,11 @@ class MarchTracer final : public Tracer {
   void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const override {
     trace_texel(patch, with_links, row, counts);
   }
+  std::unique_ptr<Tracer> reseeded(uint64_t seed) const override {
+    auto again = std::make_unique<MarchTracer>(*this);
+    again->options_.seed = seed;
+    return again;
+  }
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
 
  private:
@@ -73,7 +78,7 @@ class MarchTracer final : public Tracer {
   // Lengths in texels from here on; heights count from height-map value 0.
   const Surface& surface_;
   PatchSet patches_;
-  const MarchOptions options_;
+  MarchOptions options_;
   const bool wrap_, round_weights_;
   std::vector<WeightedDirection> rays_;
   Grid<float> padded_heights_;  // one texel more on every side: texel (i, j) is at (i + 1, j + 1)

@@ -16,9 +16,10 @@ namespace hemibake {
 // cost over the texels' rays alone.
 inline constexpr double kFacetRays = 1.2;
 
-// Rays of each node of a facet that is cut into k² triangles.
+// Rays of each node of a facet that is cut into k² triangles. Of fewer than eight, or of all where a texel has
+// no more, some in a deep fold would only meet each other and keep their light for ever.
 inline int rays_per_node(int rays, int k) {
-  return std::max(1, static_cast<int>(std::lround(kFacetRays * rays / node_count(k))));
+  return std::max(std::min(rays, 8), static_cast<int>(std::lround(kFacetRays * rays / node_count(k))));
 }
 
 // Azimuths of each node, for slices: at least five, so that what is seen does not lean to where the few look;

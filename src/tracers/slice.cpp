@@ -90,6 +90,11 @@ class SliceTracer final : public Tracer {
                   TracerCounts& counts) const override;
   void trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
                      TracerCounts& counts) const override;
+  std::unique_ptr<Tracer> reseeded(uint64_t seed) const override {
+    auto again = std::make_unique<SliceTracer>(*this);
+    again->options_.seed = seed;
+    return again;
+  }
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
 
  private:

@@ -88,10 +88,13 @@ void append_hits(const Stretch& stretch, double rim, float strata_per_weight, st
 void append_links(const Surface& surface, const PatchSet& patches, TexelLinks texel_links,
                   const SliceHit& hit, double weight, glm::dvec2 start, glm::dvec2 direction, double choice,
                   std::vector<Link>& links) {
-  const glm::dvec2 position = start + hit_distance(surface, hit, direction) * direction;
+  const double distance = hit_distance(surface, hit, direction);
+  const glm::dvec2 position = start + distance * direction;
   if (patches.kind == Patches::kFacets) {
-    const glm::dvec2 uv = facet_coordinates(surface, hit.facet, position);
-    links.push_back({draw_patch(patches, hit.facet, uv, choice), static_cast<float>(weight)});
+    const double ray_length =
+        distance * std::sqrt(1 + static_cast<double>(hit.slope) * static_cast<double>(hit.slope));
+    add_node_links(patches, hit.facet, facet_coordinates(surface, hit.facet, position), ray_length, choice,
+                   weight, links);
     return;
   }
   if (texel_links == TexelLinks::kNearest) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -80,6 +81,8 @@ class Tracer {
     for (size_t i = 0; i < rows.size(); ++i)
       trace_patch(first + static_cast<uint32_t>(i), with_links, rows[i], counts);
   }
+  // The same with other random rotations, on the same surface: to tell noise. Shares what is large.
+  virtual std::unique_ptr<Tracer> reseeded(uint64_t seed) const = 0;
   // Every ray trace_texel shoots for this texel, in order.
   virtual std::vector<RayRecord> replay_texel(uint32_t texel) const = 0;
 };

@@ -342,7 +342,7 @@ TEST(SliceTracer, ReplayAddsUpToTheRow) {
 
 // The facets' light adds up to what falls through the opening.
 TEST(SliceTracer, FacetLightAddsUpToTheOpening) {
-  const Surface surface = synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.2);
+  const Surface surface = synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.1);
   const auto tracer = make_slice_tracer(surface, azimuths(64));
   Row row;
   TracerCounts counts;
