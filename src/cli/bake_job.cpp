@@ -94,6 +94,31 @@ void record_bounces(const Bounces& bounces, Provenance& p) {
   p["texels_closed"] = bounces.texels_closed.size();
 }
 
+void record_errors(const ErrorEstimate& errors, Provenance& p) {
+  p["error_ao_rays"] = errors.ao_rays;
+  p["error_direct_rays"] = errors.direct_rays;
+  p["error_first_rays"] = errors.first_rays;
+  p["error_mean_direct_rays"] = errors.mean_direct_rays;
+  p["error_mean_first_rays"] = errors.mean_first_rays;
+  p["error_mean_first_patches"] = errors.first_patches;
+  p["error_mean_half_patches"] = errors.half_patches;
+  p["error_mean_total_bounces"] = errors.total_bounces;
+  p["error_mean_half_bounces"] = errors.half_bounces;
+  p["error_far_horizon"] = errors.far_horizon;
+  p["error_curve_direct_rays"] = errors.curve_direct;
+  p["error_curve_first_rays"] = errors.curve_first;
+}
+
+std::string describe_errors(const ErrorEstimate& e) {
+  return fmt::format(
+      "errors    of a texel (rms, rays): ao {:.2g}, E0/pi {:.2g}, E1/pi {:.2g}; of the means: E0/pi {:.1g} "
+      "rays, E1/pi {:.1g} rays + {:.1g} patches, all at albedo 0.5 {:.1g} patches + {:.1g} bounces, at 1 "
+      "{:.1g} "
+      "bounces; far horizon {:.1g}; of the curves: E0/pi {:.1g}, E1/pi {:.1g}\n",
+      e.ao_rays, e.direct_rays, e.first_rays, e.mean_direct_rays, e.mean_first_rays, e.first_patches,
+      e.half_patches, e.half_bounces, e.total_bounces, e.far_horizon, e.curve_direct, e.curve_first);
+}
+
 TargetOptions target_options(const BakeJob& job) {
   TargetOptions target;
   target.error = *job.options.target_error;
@@ -122,31 +147,6 @@ void record_reached(const BakeOptions& options, const TargetErrors& reached, Pro
   p["reached_error_direct"] = reached.direct;
   for (size_t a = 0; options.wants("irradiance") && a < kTradeAlbedos.size(); ++a)
     p[fmt::format("reached_error_albedo_{:g}", kTradeAlbedos[a])] = reached.light[a];
-}
-
-void record_errors(const ErrorEstimate& errors, Provenance& p) {
-  p["error_ao_rays"] = errors.ao_rays;
-  p["error_direct_rays"] = errors.direct_rays;
-  p["error_first_rays"] = errors.first_rays;
-  p["error_mean_direct_rays"] = errors.mean_direct_rays;
-  p["error_mean_first_rays"] = errors.mean_first_rays;
-  p["error_mean_first_patches"] = errors.first_patches;
-  p["error_mean_half_patches"] = errors.half_patches;
-  p["error_mean_total_bounces"] = errors.total_bounces;
-  p["error_mean_half_bounces"] = errors.half_bounces;
-  p["error_far_horizon"] = errors.far_horizon;
-  p["error_curve_direct_rays"] = errors.curve_direct;
-  p["error_curve_first_rays"] = errors.curve_first;
-}
-
-std::string describe_errors(const ErrorEstimate& e) {
-  return fmt::format(
-      "errors    of a texel (rms, rays): ao {:.2g}, E0/pi {:.2g}, E1/pi {:.2g}; of the means: E0/pi {:.1g} "
-      "rays, "
-      "E1/pi {:.1g} rays + {:.1g} patches, all at albedo 0.5 {:.1g} patches + {:.1g} bounces, at 1 {:.1g} "
-      "bounces; far horizon {:.1g}; of the curves: E0/pi {:.1g}, E1/pi {:.1g}\n",
-      e.ao_rays, e.direct_rays, e.first_rays, e.mean_direct_rays, e.mean_first_rays, e.first_patches,
-      e.half_patches, e.half_bounces, e.total_bounces, e.far_horizon, e.curve_direct, e.curve_first);
 }
 
 std::string name_texels(const std::vector<uint32_t>& texels, int width) {

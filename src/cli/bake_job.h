@@ -39,8 +39,8 @@ struct BakeResult {
   Bake bake;
   Provenance provenance;
   std::optional<LinkEnergy> link_energy;
-  std::optional<TargetErrors> reached;  // with --target-error
   std::optional<ErrorEstimate> errors;  // with links and a bounce
+  std::optional<TargetErrors> reached;  // with --target-error
   // For the person at the terminal.
   uint64_t rays = 0;
   double seconds = 0, cpu_seconds = 0, trace_cpu_seconds = 0;

@@ -1,7 +1,7 @@
 // bake --target-error on five maps with held-out seeds: the error reached over every texel against that
 // wanted, and the rays chosen against the fewest that would have done.
 //
-//   hemibake_bench_target_error [SIDE [ERROR]]     64 0.005
+//   hemibake_bench_target_error [SIDE [ERROR]]     32 0.005
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -97,6 +97,6 @@ void run(int side, double error) {
 }  // namespace hemibake
 
 int main(int argc, char** argv) {
-  hemibake::run(argc > 1 ? std::atoi(argv[1]) : 64, argc > 2 ? std::atof(argv[2]) : 0.005);
+  hemibake::run(argc > 1 ? std::atoi(argv[1]) : 32, argc > 2 ? std::atof(argv[2]) : 0.005);
   return 0;
 }
