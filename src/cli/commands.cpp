@@ -17,6 +17,7 @@ CommandBody setup_compare(CLI::App& app);
 CommandBody setup_curves(CLI::App& app);
 CommandBody setup_export(CLI::App& app);
 CommandBody setup_fit(CLI::App& app);
+CommandBody setup_render(CLI::App& app);
 CommandBody setup_report(CLI::App& app);
 CommandBody setup_synth(CLI::App& app);
 CommandBody setup_bake(CLI::App& app);
@@ -38,6 +39,9 @@ constexpr std::array kCommands = {
     Command{"compare", "fit every candidate model to each of several curves, measure it on the others",
             setup_compare},
     Command{"export", "write a fitted model as shader source or a table", setup_export},
+    Command{"render",
+            "pictures of a bake: AO only, model, ground truth, their differences, the bounces, the wall",
+            setup_render},
     Command{"check", "check that light is neither made nor lost", setup_check},
     Command{"run", "bake, curves, fit and check in one go", setup_run},
     Command{"trade", "what every method costs and how far off it is, against a converged reference", setup_trade},

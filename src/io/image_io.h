@@ -52,6 +52,16 @@ Grid<float> read_height_map(const std::filesystem::path& path, const std::string
 // The first three channels, 0..1. Throws InputError naming both sizes where it is not width × height.
 Grid<glm::vec3> read_normal_map(const std::filesystem::path& path, int width, int height);
 
+// Colours. `stored_as_integers`: of 8 or 16 bits, which for colours mostly means sRGB-encoded; nothing is
+// decoded here.
+struct ColorImage {
+  Grid<glm::vec3> colors;
+  bool stored_as_integers = false;
+};
+
+// The first three channels; an image of fewer is grey with the first.
+ColorImage read_color_image(const std::filesystem::path& path);
+
 // Writes planes of width × height: `.exr` as 32-bit float (lossless), `.png` as 16-bit integers (one to four
 // planes of 0..1, to nearest). The entries of `provenance` become attributes `hemibake:NAME`: strings,
 // doubles and ints; booleans as 0 or 1; integers beyond 32 bits as decimal strings; and `hemibake:provenance`

@@ -261,4 +261,18 @@ Grid<glm::vec3> read_normal_map(const fs::path& path, int width, int height) {
   return normals;
 }
 
+ColorImage read_color_image(const fs::path& path) {
+  Reader reader(path);
+  const OIIO::ImageSpec& spec = reader.spec();
+  ColorImage image{Grid<glm::vec3>(spec.width, spec.height), !spec.format.is_floating_point()};
+  std::vector<MutablePlane> planes;
+  std::vector<int> indices;
+  for (int c = 0; c < 3; ++c) {
+    indices.push_back(spec.nchannels < 3 ? 0 : c);
+    planes.push_back({spec.channelnames[static_cast<size_t>(indices.back())], &image.colors.values[0][c], 3});
+  }
+  reader.read(planes, indices);
+  return image;
+}
+
 }  // namespace hemibake

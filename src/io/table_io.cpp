@@ -138,6 +138,23 @@ std::optional<size_t> find_column(const Table& table, std::string_view name) {
   return static_cast<size_t>(found - table.columns.begin());
 }
 
+std::vector<double> read_numbers(const fs::path& path, size_t count) {
+  const std::string text = read_text(path);
+  const std::vector<std::string_view> lines = split_lines(text);
+  std::vector<double> numbers;
+  for (size_t i = 0; i < lines.size(); ++i) {
+    std::string line(lines[i].substr(0, lines[i].find('#')));
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == ',' || c == '\t'; }, ' ');
+    for (const std::string_view word : split(line, ' '))
+      if (const auto number = parse_cell(word, fmt::format("{}:{}", path.string(), i + 1)))
+        numbers.push_back(*number);
+  }
+  if (numbers.size() != count)
+    throw InputError(fmt::format("{}: holds {} numbers, expected {}", path.string(), numbers.size(), count));
+  return numbers;
+}
+
 nlohmann::ordered_json read_json(const fs::path& path) {
   const std::string text = read_text(path);
   try {

@@ -29,6 +29,10 @@ void write_csv(const std::filesystem::path& path, const Table& table);
 // Index of the column, if it is there.
 std::optional<size_t> find_column(const Table& table, std::string_view name);
 
+// Finite numbers separated by spaces, commas or line ends; a # makes the rest of its line a comment. Throws
+// InputError naming file and line for anything else, and where there are not `count` of them.
+std::vector<double> read_numbers(const std::filesystem::path& path, size_t count);
+
 // Throws InputError naming file and position for what is not JSON. Names keep their order.
 nlohmann::ordered_json read_json(const std::filesystem::path& path);
 

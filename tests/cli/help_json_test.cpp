@@ -19,13 +19,15 @@ const std::vector<const char*> kBakeOptions = {
     "--channel", "--size",  "--amplitude", "--normals", "--normal-y", "--normals-from", "--edge",
     "--tracer",  "--rays",  "--cone",      "--bounces", "--converge", "--max-bounces",  "--max-distance",
     "--patches", "--links", "--outputs",   "--memory",  "--seed"};
-const std::vector<CommandHelp> kCommands = {{"synth", {"--width", "--height", "--seed", "--angle"}},
-                                            {"bake", {"--texel", "--dry-run"}},
-                                            {"curves", {"--bins"}},
-                                            {"fit", {"--model", "--abscissa", "--weights"}},
-                                            {"check", {"--tolerance"}},
-                                            {"run", {"--bins"}},
-                                            {"report", {"--albedo", "--image-size"}}};
+const std::vector<CommandHelp> kCommands = {
+    {"synth", {"--width", "--height", "--seed", "--angle"}},
+    {"bake", {"--texel", "--dry-run"}},
+    {"curves", {"--bins"}},
+    {"fit", {"--model", "--abscissa", "--weights"}},
+    {"render", {"--albedo", "--sky", "--sun", "--exposure", "--links", "--fit"}},
+    {"check", {"--tolerance"}},
+    {"run", {"--bins"}},
+    {"report", {"--albedo", "--image-size"}}};
 
 TEST(Help, NamesEveryOptionOfTheDesign) {
   for (const CommandHelp& command : kCommands) {

@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/render_options.h"
+#include "cli/render_wall.h"
+#include "cli/result_folder.h"
+#include "core/parallel.h"
+#include "io/bake_file.h"
+#include "io/output_file.h"
+#include "io/picture_text.h"
+#include "io/table_io.h"
+
+namespace hemibake {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRecord = "render.json";
+
+// Pictures that an earlier run left and this one does not make would pass for this one's.
+void remove_earlier_pictures(const fs::path& folder) {
+  if (!fs::is_regular_file(folder / kRecord)) return;
+  nlohmann::ordered_json earlier;
+  try {
+    earlier = read_json(folder / kRecord);
+    for (const auto& picture : earlier.at("pictures"))
+      for (const auto& file : picture.at("files")) {
+        const fs::path name = file.get<std::string>();
+        if (name == name.filename()) fs::remove(folder / name);
+      }
+  } catch (const nlohmann::json::exception&) {
+    throw InputError((folder / kRecord).string() +
+                     ": is not the record of a render, expected another folder");
+  }
+}
+
+nlohmann::ordered_json errors_of(const ShadedWall& shaded) {
+  nlohmann::ordered_json errors = nlohmann::ordered_json::object();
+  if (shaded.truth.empty()) return errors;
+  if (!shaded.ao_only.empty())
+    errors["ao_only"] = json_from_error(picture_error(shaded.ao_only, shaded.truth));
+  if (!shaded.model.empty()) errors["model"] = json_from_error(picture_error(shaded.model, shaded.truth));
+  return errors;
+}
+
+void draw(const RenderOptions& options, const Wall& wall, const ShadedWall& shaded, Gallery& gallery) {
+  if (options.wants("light")) add_triptych(wall, shaded, gallery);
+  if (options.wants("differences")) add_differences(shaded, gallery);
+  if (options.wants("bounces")) add_bounces(wall, options.picture, gallery);
+  if (options.wants("saturation")) add_saturation(wall, shaded, gallery);
+  if (options.wants("planes")) add_planes(wall, gallery);
+  if (options.wants("estimators")) add_estimators(wall, gallery);
+  if (options.wants("views")) add_views(wall, shaded, options.picture, gallery);
+  if (!has_font()) gallery.say_missing("captions", "no font was found, expected fonts-dejavu-core");
+}
+
+std::string describe(const RenderOptions& options, const nlohmann::ordered_json& json,
+                     const Gallery& gallery) {
+  std::string text =
+      fmt::format("{}: {:.1f} cpu-s\n", options.folder.string(), json["cpu_seconds"].get<double>());
+  for (const auto& [name, error] : json["errors"].items())
+    text +=
+        fmt::format("{:9} against ground truth: {:+.2f} % in mean luminance, rms {:.2f} %\n", name,
+                    100 * error["bias_over_mean"].get<double>(), 100 * error["rms_over_mean"].get<double>());
+  return text + gallery.text();
+}
+
+int run_render(RenderOptions& options) {
+  apply_common_options(options.common);
+  settle_render_options(options);
+  BakeFile file = read_bake(options.bake);
+  const Provenance provenance = make_provenance(command_line(process_arguments()), options.bake);
+  const ResultFolder folder(options.folder);
+  check_output_path(options.folder / kRecord);
+
+  const RenderedWall rendered = light_wall(options, std::move(file));
+  const ShadedWall shaded = shade_wall(rendered.wall, options.picture);
+  remove_earlier_pictures(options.folder);
+  Gallery gallery(options.folder, provenance);
+  draw(options, rendered.wall, shaded, gallery);
+
+  nlohmann::ordered_json json = provenance;
+  json["light"] = rendered.light;
+  json["exposure_ev"] = shaded.exposure_ev;
+  json["errors"] = errors_of(shaded);
+  json.update(gallery.json());
+  write_json(options.folder / kRecord, json);
+  json["cpu_seconds"] = process_cpu_seconds();
+  print_result(options.common, json, describe(options, json, gallery));
+  return 0;
+}
+
+}  // namespace
+
+CommandBody setup_render(CLI::App& app) {
+  auto options = std::make_shared<RenderOptions>();
+  add_render_options(app, *options);
+  return [options] { return run_render(*options); };
+}
+
+}  // namespace hemibake

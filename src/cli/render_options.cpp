@@ -1,0 +1,168 @@
+#include "cli/render_options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "cli/validators.h"
+#include "core/constants.h"
+#include "core/error.h"
+
+namespace hemibake {
+namespace {
+
+constexpr double kLargestExposure = 100;  // stops
+constexpr double kLargestSun = 1e6;
+
+// The numbers of a list separated by commas; nullopt where one of them is none.
+std::optional<std::vector<double>> numbers_of(const std::string& text) {
+  std::vector<double> numbers;
+  for (const char *at = text.data(), *const end = at + text.size();; ++at) {
+    double value = 0;
+    const auto [stop, error] = std::from_chars(at, end, value);
+    if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
+    numbers.push_back(value);
+    if (stop == end) return numbers;
+    if (*stop != ',') return std::nullopt;
+    at = stop;
+  }
+}
+
+double radians(double degrees) { return degrees * kPi / 180; }
+
+[[noreturn]] void refuse(const char* option, const std::string& text, const char* expected) {
+  throw InputError(fmt::format("{}: '{}', expected {}", option, text, expected));
+}
+
+}  // namespace
+
+bool RenderOptions::wants(const std::string& subject) const {
+  return std::ranges::find(pictures, subject) != pictures.end();
+}
+
+std::filesystem::path RenderOptions::sky_file() const { return sky[0] == "uniform" ? "" : sky.back(); }
+
+void add_render_options(CLI::App& app, RenderOptions& options) {
+  app.add_option("BAKE", options.bake, "the bake; pictures of what it does not hold are left out and named");
+  app.add_option("-o,--output", options.folder, "folder for the pictures and render.json; made if new")
+      ->required()
+      ->option_text("DIR");
+  app.add_option("--pictures", options.pictures, "subjects to draw, separated by commas")
+      ->delimiter(',')
+      ->check(
+          CLI::IsMember({"light", "differences", "bounces", "saturation", "planes", "estimators", "views"}))
+      ->capture_default_str();
+
+  app.add_option("--albedo", options.albedo,
+                 "reflectance 0..1: R,G,B, or one number, or an image of the bake's size, whose bounces are "
+                 "then run again over the links")
+      ->capture_default_str()
+      ->option_text("R,G,B | FILE")
+      ->group("Wall");
+  app.add_option("--albedo-encoding", options.albedo_encoding,
+                 "of the image: linear, or srgb; auto: srgb where it stores integers")
+      ->check(CLI::IsMember({"auto", "linear", "srgb"}))
+      ->capture_default_str()
+      ->group("Wall");
+  app.add_option("--links", options.links,
+                 "links file of the bake; without it the map is traced again where light has to go round "
+                 "again (albedo map, sun, any sky but uniform)")
+      ->option_text("LINKS.h5")
+      ->group("Wall");
+  app.add_option("--model", options.model, "the model that shades: of the bake's own curves, or of --fit")
+      ->check(CLI::IsMember({"bounded", "published"}))
+      ->capture_default_str()
+      ->group("Wall");
+  app.add_option("--fit", options.fit, "constants of the model")->option_text("FIT.json")->group("Wall");
+
+  app.add_option("--sky", options.sky,
+                 "uniform: radiance 1; sh FILE: nine RGB coefficients of radiance, L00 L1-1 L10 L11 L2-2 "
+                 "L2-1 L20 L21 L22 (Ramamoorthi and Hanrahan 2001) with x right, y down the rows, z up; or "
+                 "a latitude-longitude image, top row up, azimuth 0 (the top of the map) at its left edge, "
+                 "clockwise")
+      ->expected(1, 2)
+      ->capture_default_str()
+      ->option_text("uniform | sh FILE | FILE")
+      ->group("Light");
+  app.add_option("--sky-truth", options.sky_truth,
+                 "what lights the ground truth under an image: the image itself, direction by direction, or "
+                 "its projection to sh, which lights the other pictures")
+      ->check(CLI::IsMember({"traced", "sh"}))
+      ->capture_default_str()
+      ->group("Light");
+  app.add_option("--sky-rays", options.sky_rays, "rays per texel and patch to a sky that is not uniform")
+      ->check(whole_number_in(1, 1 << 20))
+      ->capture_default_str()
+      ->group("Light");
+  app.add_option("--sun", options.sun,
+                 "azimuth, degrees clockwise from the top of the map; elevation, degrees over 0 to 90; "
+                 "irradiance of a surface facing it (a uniform sky gives pi)")
+      ->option_text("AZIMUTH,ELEVATION,INTENSITY")
+      ->group("Light");
+
+  app.add_option("--exposure", options.picture.exposure_ev,
+                 "stops, of AO only, model, truth and views; default: chosen so that a thousandth of the "
+                 "pixels is above white")
+      ->check(number_in(-kLargestExposure, kLargestExposure))
+      ->group("Pictures");
+  app.add_option("--strip", options.picture.strip_bounces, "panels in the strip of bounces")
+      ->check(whole_number_in(1, 64))
+      ->capture_default_str()
+      ->group("Pictures");
+  app.add_option("--camera", options.camera,
+                 "where the camera of the views stands: azimuth as of --sun, elevation 5 to 90 degrees")
+      ->option_text("AZIMUTH,ELEVATION")
+      ->capture_default_str()
+      ->group("Pictures");
+  app.add_option("--view-width", options.view_width, "of the views, pixels")
+      ->check(whole_number_in(16, 8192))
+      ->capture_default_str()
+      ->group("Pictures");
+  add_common_options(app, options.common);
+}
+
+void settle_render_options(RenderOptions& options) {
+  // `--sky uniform BAKE.exr`: the second word is no file of the sky's.
+  if (options.bake.empty() && options.sky.size() == 2 && options.sky[0] != "sh") {
+    options.bake = options.sky.back();
+    options.sky.pop_back();
+  }
+  if (options.bake.empty()) throw InputError("BAKE: is missing, expected the file of a bake");
+  if (options.sky[0] == "sh" && options.sky.size() != 2)
+    throw InputError("--sky: sh by itself, expected a file of coefficients after it");
+  if (options.sky[0] != "sh" && options.sky.size() != 1)
+    refuse("--sky", options.sky[0] + " " + options.sky[1], "uniform, sh FILE, or one image");
+
+  const auto camera = numbers_of(options.camera);
+  if (!camera || camera->size() != 2 || std::abs((*camera)[0]) > 360 || (*camera)[1] < 5 || (*camera)[1] > 90)
+    refuse("--camera", options.camera, "AZIMUTH,ELEVATION within -360..360 and 5..90 degrees");
+  options.picture.camera.azimuth_rad = radians((*camera)[0]);
+  options.picture.camera.elevation_rad = radians((*camera)[1]);
+  options.picture.camera.width = options.view_width;
+  options.picture.camera.height = std::max(1, options.view_width * 3 / 4);
+}
+
+std::optional<glm::vec3> albedo_from_text(const std::string& text) {
+  const auto numbers = numbers_of(text);
+  if (!numbers) return std::nullopt;
+  const bool in_range = std::ranges::all_of(*numbers, [](double v) { return v >= 0 && v <= 1; });
+  if (!in_range || (numbers->size() != 1 && numbers->size() != 3))
+    refuse("--albedo", text, "one or three numbers in 0..1, or an image");
+  const std::vector<double>& n = *numbers;
+  return n.size() == 1 ? glm::vec3(static_cast<float>(n[0])) : glm::vec3(glm::dvec3(n[0], n[1], n[2]));
+}
+
+std::optional<Sun> sun_from_text(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const auto n = numbers_of(text);
+  if (!n || n->size() != 3 || std::abs((*n)[0]) > 360 || !((*n)[1] > 0 && (*n)[1] <= 90) ||
+      !((*n)[2] >= 0 && (*n)[2] <= kLargestSun))
+    refuse("--sun", text,
+           "AZIMUTH,ELEVATION,INTENSITY within -360..360 degrees, over 0 to 90 degrees and 0..1e6");
+  return Sun{direction_of(radians((*n)[0]), radians((*n)[1])), (*n)[2]};
+}
+
+}  // namespace hemibake
