@@ -13,6 +13,7 @@
 #include "core/statistics.h"
 #include "io/links_file.h"
 #include "transport/bounces.h"
+#include "transport/direct_light.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {
@@ -28,6 +29,8 @@ PlanOptions plan_options(const BakeJob& job) {
   plan.with_links = job.options.needs_links();
   plan.bounces = job.options.wants("irradiance") ? job.options.bounces : 0;
   plan.scene_bytes = tracer_bytes(job.options, job.map.surface);
+  if (job.options.wants("normal")) plan.kept_planes += 3;
+  if (job.options.wants("irradiance") && !plan.with_links) plan.kept_planes += 3;  // E₀, total, residual
   return plan;
 }
 
@@ -227,7 +230,9 @@ BakeResult perform_bake(const BakeJob& job) {
 
   Bounces bounces;
   if (options.wants("irradiance")) {
-    bounces = bounce_light(seen, {options.bounces, options.converge, options.max_bounces});
+    bounces = options.needs_links()
+                  ? bounce_light(seen, {options.bounces, options.converge, options.max_bounces})
+                  : direct_light(seen);
     record_bounces(bounces, result.provenance);
     if (!seen.gather.empty() && bounces.irradiance.size() > 1) {
       result.errors = estimate_errors(*job.tracer->reseeded(options.seed + kAnotherSeed), seen, bounces);

@@ -62,7 +62,7 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
   plan.surface_bytes = texels * 16 + options.scene_bytes;
   // α, E₀/π and the bent normal; then every bounce, total and residual as planes, and four vectors of doubles
   // under way for texels and patches.
-  plan.plane_bytes = texels * 20;
+  plan.plane_bytes = texels * (20 + 4 * static_cast<size_t>(options.kept_planes));
   if (options.with_links) {
     const size_t patches = make_patches(surface, options.patches).count;
     plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 3) + 32) + patches * 36;

@@ -29,6 +29,7 @@ struct PlanOptions {
   bool with_links = true;
   int bounces = 20;
   size_t scene_bytes = 0;  // of the tracer
+  int kept_planes = 0;     // results kept beside what tracing and links take
 };
 
 // Without tracing: all but links and seconds.
