@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/constants.h"
 #include "core/parallel.h"
@@ -64,19 +65,27 @@ double worst_residual(const std::vector<double>& total) {
   return 1 - *std::min_element(total.begin(), total.end());
 }
 
-bool sees_only_itself(const Links& links, uint32_t row) {
-  const LinkBlock& block = links.blocks[row / Links::kRowsPerBlock];
-  const uint32_t local = row % Links::kRowsPerBlock;
-  const uint32_t begin = block.row_begin[local], end = block.row_begin[local + 1];
-  return end == begin + 1 && block.patches[begin] == row && block.weights[begin] >= 1;
+// Rows whose one link leads to themselves and loses nothing, ascending.
+std::vector<uint32_t> rows_that_see_only_themselves(const Links& links) {
+  std::vector<uint32_t> closed;
+  BlockRows rows;
+  for (size_t b = 0; b < links.blocks.size(); ++b) {
+    unpack_block(links.blocks[b], rows);
+    for (uint32_t i = 0; i + 1 < rows.row_begin.size(); ++i) {
+      const uint32_t link = rows.row_begin[i], row = static_cast<uint32_t>(b) * Links::kRowsPerBlock + i;
+      if (rows.row_begin[i + 1] == link + 1 && rows.patches[link] == row && rows.weights[link] >= 1)
+        closed.push_back(row);
+    }
+  }
+  return closed;
 }
 
 void name_short_texels(const Visibility& seen, double tolerance, Bounces& result) {
-  for (uint32_t texel = 0; texel < result.residual.size(); ++texel) {
-    if (static_cast<double>(result.residual[texel]) < tolerance) continue;
-    result.texels_short.push_back(texel);
-    if (seen.patches.empty() && sees_only_itself(seen.gather, texel)) result.texels_closed.push_back(texel);
-  }
+  for (uint32_t texel = 0; texel < result.residual.size(); ++texel)
+    if (static_cast<double>(result.residual[texel]) >= tolerance) result.texels_short.push_back(texel);
+  if (result.texels_short.empty() || !seen.patches.empty()) return;
+  std::ranges::set_intersection(rows_that_see_only_themselves(seen.gather), result.texels_short,
+                                std::back_inserter(result.texels_closed));
 }
 
 }  // namespace

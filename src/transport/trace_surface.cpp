@@ -35,10 +35,7 @@ TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, 
         store(begin + i, row);
         if (links != nullptr) append_row(links->blocks[b], row.links);
       }
-      if (links != nullptr) {
-        links->blocks[b].patches.shrink_to_fit();
-        links->blocks[b].weights.shrink_to_fit();
-      }
+      if (links != nullptr) finish_block(links->blocks[b]);
       progress.advance(counts[b].rays);
     }
   });

@@ -200,7 +200,7 @@ TEST(SliceTracer, SameBytesFromAnyNumberOfThreadsAndOneByOne) {
   Row row;
   TracerCounts counts;
   for (size_t b = 0; b < one.patches.blocks.size(); ++b) {
-    EXPECT_EQ(one.patches.blocks[b].patches, two.patches.blocks[b].patches);
+    EXPECT_EQ(one.patches.blocks[b].codes, two.patches.blocks[b].codes);
     EXPECT_EQ(one.patches.blocks[b].weights, two.patches.blocks[b].weights);
   }
   for (uint32_t facet = 0; facet < tracer->patch_count(); facet += 13) {
