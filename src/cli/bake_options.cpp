@@ -30,7 +30,7 @@ bool BakeOptions::needs_links() const {
   return !links.empty() || (wants("irradiance") && (bounces > 0 || converge));
 }
 
-void add_bake_options(CLI::App& app, BakeOptions& options) {
+void add_surface_options(CLI::App& app, BakeOptions& options) {
   app.add_option("MAP", options.map, "height map: PNG, TIFF, EXR or anything else OpenImageIO reads")
       ->required();
   app.add_option("--channel", options.channel,
@@ -62,7 +62,10 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->check(CLI::IsMember({"heights", "faces"}))
       ->capture_default_str()
       ->group("Surface");
+}
 
+void add_bake_options(CLI::App& app, BakeOptions& options) {
+  add_surface_options(app, options);
   app.add_option("--tracer", options.tracer,
                  "how visibility is found: rays with Embree, vertical slices, or the texel march of 2018")
       ->check(CLI::IsMember({"embree", "march", "slice"}))

@@ -60,7 +60,8 @@ struct BakeOptions {
   bool needs_links() const;  // bounces, or a links file
 };
 
-// Declares them on `app`: one definition per option.
+// Declares them on `app`: one definition per option. The first only those that make the map a surface.
+void add_surface_options(CLI::App& app, BakeOptions& options);
 void add_bake_options(CLI::App& app, BakeOptions& options);
 
 // Fills in what follows from other options: the preset (where its options were not given on the command line

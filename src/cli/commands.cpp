@@ -21,6 +21,7 @@ CommandBody setup_synth(CLI::App& app);
 CommandBody setup_bake(CLI::App& app);
 CommandBody setup_check(CLI::App& app);
 CommandBody setup_run(CLI::App& app);
+CommandBody setup_trade(CLI::App& app);
 
 namespace {
 
@@ -38,6 +39,7 @@ constexpr std::array kCommands = {
     Command{"export", "write a fitted model as shader source or a table", setup_export},
     Command{"check", "check that light is neither made nor lost", setup_check},
     Command{"run", "bake, curves, fit and check in one go", setup_run},
+    Command{"trade", "what every method costs and how far off it is, against a converged reference", setup_trade},
 };
 
 // One line, whatever a file name or a library puts into it.

@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "cli/file_checks.h"
+#include "cli/result_folder.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "curves/curves.h"
@@ -30,30 +31,6 @@ struct RunOptions {
   BakeOptions bake;
   fs::path folder;
   int bins = 100;
-};
-
-// The folder of the results, which may be new; its parent may not. A new one goes again where nothing came of
-// it.
-class ResultFolder {
- public:
-  explicit ResultFolder(const fs::path& path) : path_(path) {
-    std::error_code error;
-    made_ = fs::create_directory(path, error);
-    if (error || !fs::is_directory(path))
-      throw InputError(
-          fmt::format("{}: could not make the folder: {}, expected a folder or a new name in one",
-                      path.string(), error ? error.message() : "a file of that name is there"));
-  }
-  ~ResultFolder() {
-    std::error_code not_empty;
-    if (made_) fs::remove(path_, not_empty);
-  }
-  ResultFolder(const ResultFolder&) = delete;
-  ResultFolder& operator=(const ResultFolder&) = delete;
-
- private:
-  fs::path path_;
-  bool made_ = false;
 };
 
 FitFile fit_all(const Curves& curves, const Provenance& provenance) {

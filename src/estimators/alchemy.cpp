@@ -82,11 +82,13 @@ AlchemyImages alchemy_images(const GeometryBuffer& buffer, const AlchemyOptions&
     images.raw[i] = static_cast<float>(
         std::pow(std::clamp(1 - options.scale * obscurance[i], 0.0, 1.0), options.contrast));
   images.blurred_rows = images.blurred = images.raw;
-  if (!options.blur) return images;
+  if (options.blur == BlurPasses::kNone) return images;
   const BlurOptions& blur = options.blur_options;
   const double variance = blur.depth_variance_m2 > 0 ? blur.depth_variance_m2 : 0.01 * radius_m * radius_m;
   images.blurred_rows =
       bilateral_blur_pass(images.raw, buffer, blur.radius_pixels, variance, BlurAxis::kRows);
+  images.blurred = images.blurred_rows;
+  if (options.blur == BlurPasses::kRows) return images;
   images.blurred =
       bilateral_blur_pass(images.blurred_rows, buffer, blur.radius_pixels, variance, BlurAxis::kColumns);
   return images;

@@ -16,6 +16,9 @@ namespace hemibake {
 
 enum class Projection { kOrthographic, kPerspective };
 
+// Which passes of the blur are run.
+enum class BlurPasses { kNone, kRows, kBoth };
+
 struct AlchemyOptions {
   int taps = 16;               // n, 1..
   double radius_m = 0;         // R; 0: the height range, at least two texels and at most half the longer side
@@ -26,7 +29,7 @@ struct AlchemyOptions {
   Projection projection = Projection::kOrthographic;
   double camera_height_m = 1;  // orthographic: of the camera's plane above the highest texel
   PerspectiveCamera camera;    // perspective
-  bool blur = true;
+  BlurPasses blur = BlurPasses::kBoth;
   BlurOptions blur_options;
 };
 
@@ -40,8 +43,8 @@ double spiral_turn(int x, int y);
 // S of every pixel; 0 where no surface is. Unbounded above.
 Grid<double> alchemy_obscurance(const GeometryBuffer& buffer, const AlchemyOptions& options, double radius_m);
 
-// AO per pixel: before the blur, after its pass along the rows, and after its pass along the columns. Without
-// blur all three are the same.
+// AO per pixel: before the blur, after its pass along the rows, and after its pass along the columns. A pass
+// that is not run leaves the picture as it was.
 struct AlchemyImages {
   Grid<float> raw, blurred_rows, blurred;
 };

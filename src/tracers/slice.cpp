@@ -20,7 +20,8 @@ namespace hemibake {
 namespace {
 
 // Hash streams, one per use: apart from those of the other tracers.
-constexpr uint64_t kTexelTurn = 0x511ce01, kFacetTurn = 0x511ce02, kFacetShift = 0x511ce03;
+constexpr uint64_t kTexelTurn = 0x511ce01, kFacetTurn = 0x511ce02, kFacetShift = 0x511ce03,
+                   kTexelPlace = 0x511ce04, kFacetPlace = 0x511ce05;
 
 // Paths of a family: azimuths times rotations. With fewer azimuths more rotations, so that all receivers
 // together see the whole circle; with more rotations fewer packets share a path.
@@ -28,7 +29,22 @@ constexpr int kPaths = 512;
 // Segments kept ready in a family, about 500 bytes each.
 constexpr int kReadySegments = 16384;
 
+// Samples for links of a slice that holds the mean share of its receiver's hemisphere. Facets take fewer:
+// what a texel gathers averages over many of them.
+constexpr int kTexelStrata = kStrataPerSlice, kFacetStrata = kStrataPerSlice / 3;
+
+// Packets walked together: with links, what they meet stays in the cache.
+constexpr size_t kPacketsTogether = 64, kPacketsWithLinks = 16;
+
 constexpr uint32_t kNoFacet = 0xffffffff;
+
+// The receivers asked for of one packet.
+struct AskedPacket {
+  SlicePacket packet;
+  int first_lane, end_lane;
+  uint32_t receiver;  // of lane 0; the next lane's is `step` more
+  uint32_t step;
+};
 
 class SliceTracer final : public Tracer {
  public:
@@ -52,10 +68,14 @@ class SliceTracer final : public Tracer {
  private:
   SlicePaths make_paths(bool of_facets, int half) const;
   int turn_of(uint64_t stream, uint64_t place) const;
+  void choose_strata(int per_slice, uint64_t stream, uint64_t place, uint64_t step,
+                     SlicePacket& packet) const;
   SlicePacket texel_packet(int x, int y) const;
   SlicePacket facet_packet(int column, int row, int half) const;
-  std::vector<PacketView> look(const SlicePaths& paths, bool with_links,
+  std::vector<PacketView> look(const SlicePaths& paths, WalkFor what,
                                std::span<const SlicePacket> packets) const;
+  void answer(const SlicePaths& paths, bool of_facets, bool with_links, std::span<const AskedPacket> asked,
+              uint32_t first, std::span<Row> rows, TracerCounts& counts) const;
   void clip_to_max_distance(const SlicePaths& paths, const SlicePacket& packet, PacketView& view) const;
   void fill_row(const SlicePaths& paths, const SlicePacket& packet, const PacketView& view, size_t lane,
                 uint32_t own_facet, bool with_links, Row& row, TracerCounts& counts) const;
@@ -103,6 +123,17 @@ int SliceTracer::turn_of(uint64_t stream, uint64_t place) const {
   return static_cast<int>(unit_interval(mix_bits(options_.seed, stream, place)) * turns_);
 }
 
+// The mean over the azimuths of the weight of a receiver's slice is half the secant of its tilt.
+void SliceTracer::choose_strata(int per_slice, uint64_t stream, uint64_t place, uint64_t step,
+                                SlicePacket& packet) const {
+  for (uint64_t lane = 0; lane < kSliceLanes; ++lane) {
+    const double x = static_cast<double>(packet.rim_x[lane]), y = static_cast<double>(packet.rim_y[lane]);
+    packet.strata_per_weight[lane] = static_cast<float>(2 * per_slice / std::sqrt(1 + x * x + y * y));
+    packet.place[lane] =
+        static_cast<float>(unit_interval(mix_bits(options_.seed, stream, place + step * lane)));
+  }
+}
+
 // The packet that begins at a multiple of kSliceLanes.
 SlicePacket SliceTracer::texel_packet(int x, int y) const {
   SlicePacket packet;
@@ -117,6 +148,7 @@ SlicePacket SliceTracer::texel_packet(int x, int y) const {
     packet.rim_x[l] = -n.x / n.z;
     packet.rim_y[l] = -n.y / n.z;
   }
+  choose_strata(kTexelStrata, kTexelPlace, surface_.heights_m.index(x, y), 1, packet);
   return packet;
 }
 
@@ -137,14 +169,16 @@ SlicePacket SliceTracer::facet_packet(int column, int row, int half) const {
     packet.rim_x[l] = packet.plane_x[l] = height(1, half) - height(0, half);
     packet.rim_y[l] = packet.plane_y[l] = height(half, 1) - height(half, 0);
   }
+  choose_strata(kFacetStrata, kFacetPlace,
+                2 * surface_.heights_m.index(column, row) + static_cast<uint64_t>(half), 2, packet);
   return packet;
 }
 
-std::vector<PacketView> SliceTracer::look(const SlicePaths& paths, bool with_links,
+std::vector<PacketView> SliceTracer::look(const SlicePaths& paths, WalkFor what,
                                           std::span<const SlicePacket> packets) const {
   const bool limited = std::isfinite(max_distance_texels_);
   std::vector<PacketView> views(packets.size());
-  walk_packets(field_, paths, {with_links || limited, max_distance_texels_}, packets, views);
+  walk_packets(field_, paths, {limited ? WalkFor::kStretches : what, max_distance_texels_}, packets, views);
   if (limited)
     for (size_t i = 0; i < packets.size(); ++i) clip_to_max_distance(paths, packets[i], views[i]);
   return views;
@@ -170,7 +204,9 @@ void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacke
       view.sky.y[lane] += direction.y * (all.horizontal - part.horizontal);
       view.sky.z[lane] += all.vertical - part.vertical;
       near.weight = static_cast<float>(part.vertical - rim * part.horizontal);
-      if (near.weight > 0) near_stretches.push_back(near);
+      if (near.weight <= 0) continue;
+      near_stretches.push_back(near);
+      append_hits(near, rim, packet.strata_per_weight[lane], view.hits[lane]);
     }
     view.stretches[lane] = std::move(near_stretches);
   }
@@ -196,36 +232,49 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
   counts.rays += static_cast<uint64_t>(options_.azimuths);
   counts.cut_short += view.cut_short[lane];
   if (!with_links) return;
-  for (const Stretch& stretch : view.stretches[lane]) {
+  for (const SliceHit& hit : view.hits[lane]) {
     // Where a path leaves its own facet at a corner, rounding may leave a little of it.
-    if (stretch.facet == own_facet) continue;
-    const SlicePath& path = paths.paths[paths.path_index(packet.turn, static_cast<int>(stretch.azimuth))];
+    if (hit.facet == own_facet) continue;
+    const SlicePath& path = paths.paths[paths.path_index(packet.turn, static_cast<int>(hit.azimuth))];
     const glm::dvec2 start = glm::dvec2(packet.x + static_cast<int>(lane), packet.y) + path.origin;
-    const double rim = rim_x * path.direction.x + rim_y * path.direction.y;
-    append_stretch_links(surface_, options_, stretch, static_cast<double>(stretch.weight) / whole, rim, start,
-                         path.direction, row.links);
+    append_links(surface_, options_, hit, static_cast<double>(hit.weight) / whole, start, path.direction,
+                 row.links);
   }
   merge_links(row);
+}
+
+// Fills the rows of all receivers asked for; `first` is the receiver of rows[0].
+void SliceTracer::answer(const SlicePaths& paths, bool of_facets, bool with_links,
+                         std::span<const AskedPacket> asked, uint32_t first, std::span<Row> rows,
+                         TracerCounts& counts) const {
+  const size_t together = with_links ? kPacketsWithLinks : kPacketsTogether;
+  for (size_t begin = 0; begin < asked.size(); begin += together) {
+    const auto piece = asked.subspan(begin, std::min(together, asked.size() - begin));
+    std::vector<SlicePacket> packets;
+    for (const AskedPacket& one : piece) packets.push_back(one.packet);
+    const std::vector<PacketView> views = look(paths, with_links ? WalkFor::kHits : WalkFor::kSky, packets);
+    for (size_t i = 0; i < piece.size(); ++i)
+      for (int lane = piece[i].first_lane; lane < piece[i].end_lane; ++lane) {
+        const uint32_t receiver = piece[i].receiver + piece[i].step * static_cast<uint32_t>(lane);
+        fill_row(paths, packets[i], views[i], static_cast<size_t>(lane), of_facets ? receiver : kNoFacet,
+                 with_links, rows[receiver - first], counts);
+      }
+  }
 }
 
 void SliceTracer::trace_texels(uint32_t first, bool with_links, std::span<Row> rows,
                                TracerCounts& counts) const {
   const uint32_t width = static_cast<uint32_t>(surface_.width()),
                  end = first + static_cast<uint32_t>(rows.size());
-  std::vector<SlicePacket> packets;
+  std::vector<AskedPacket> asked;
   for (uint32_t texel = first; texel < end;) {
     const int x = static_cast<int>(texel % width), lane = x % kSliceLanes;
-    packets.push_back(texel_packet(x - lane, static_cast<int>(texel / width)));
-    texel += static_cast<uint32_t>(packets.back().lanes - lane);
+    const SlicePacket packet = texel_packet(x - lane, static_cast<int>(texel / width));
+    const int count = std::min(packet.lanes - lane, static_cast<int>(end - texel));
+    asked.push_back({packet, lane, lane + count, texel - static_cast<uint32_t>(lane), 1});
+    texel += static_cast<uint32_t>(count);
   }
-  const std::vector<PacketView> views = look(texel_paths_, with_links, packets);
-  size_t index = 0;
-  for (uint32_t texel = first; texel < end; ++texel) {
-    const size_t lane = texel % width % kSliceLanes;
-    if (lane == 0 && texel > first) ++index;
-    fill_row(texel_paths_, packets[index], views[index], lane, kNoFacet, with_links, rows[texel - first],
-             counts);
-  }
+  answer(texel_paths_, false, with_links, asked, first, rows, counts);
 }
 
 void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
@@ -233,32 +282,26 @@ void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> 
   if (options_.patches == Patches::kTexels) return trace_texels(first, with_links, rows, counts);
   const uint32_t columns = facet_columns(surface_), end = first + static_cast<uint32_t>(rows.size());
   for (uint32_t half = 0; half < 2; ++half) {
-    const SlicePaths& paths = facet_paths_[half];
     const uint32_t first_cell = (first + 1 - half) / 2, end_cell = (end + 1 - half) / 2;
-    std::vector<SlicePacket> packets;
+    std::vector<AskedPacket> asked;
     for (uint32_t cell = first_cell; cell < end_cell;) {
       const int column = static_cast<int>(cell % columns), lane = column % kSliceLanes;
-      packets.push_back(
-          facet_packet(column - lane, static_cast<int>(cell / columns), static_cast<int>(half)));
-      cell += static_cast<uint32_t>(packets.back().lanes - lane);
+      const SlicePacket packet =
+          facet_packet(column - lane, static_cast<int>(cell / columns), static_cast<int>(half));
+      const int count = std::min(packet.lanes - lane, static_cast<int>(end_cell - cell));
+      asked.push_back({packet, lane, lane + count, 2 * (cell - static_cast<uint32_t>(lane)) + half, 2});
+      cell += static_cast<uint32_t>(count);
     }
-    const std::vector<PacketView> views = look(paths, with_links, packets);
-    size_t index = 0;
-    for (uint32_t cell = first_cell; cell < end_cell; ++cell) {
-      const size_t lane = cell % columns % kSliceLanes;
-      if (lane == 0 && cell > first_cell) ++index;
-      const uint32_t facet = 2 * cell + half;
-      fill_row(paths, packets[index], views[index], lane, facet, with_links, rows[facet - first], counts);
-    }
+    answer(facet_paths_[half], true, with_links, asked, first, rows, counts);
   }
 }
 
-// One record per stretch seen, and one per azimuth for its sky.
+// One record per stretch seen, and one per azimuth for its sky: all of what the links are a sample of.
 std::vector<RayRecord> SliceTracer::replay_texel(uint32_t texel) const {
   const int x = static_cast<int>(texel) % surface_.width(), y = static_cast<int>(texel) / surface_.width();
   const size_t lane = static_cast<size_t>(x % kSliceLanes);
   const SlicePacket packet = texel_packet(x - x % kSliceLanes, y);
-  const std::vector<PacketView> views = look(texel_paths_, true, {&packet, 1});
+  const std::vector<PacketView> views = look(texel_paths_, WalkFor::kStretches, {&packet, 1});
   const SliceSums& all = views[0].hemisphere;
   const glm::dvec2 rim_slope(packet.rim_x[lane], packet.rim_y[lane]);
   const double uniform_whole = all.uniform[lane];
@@ -289,7 +332,9 @@ std::vector<RayRecord> SliceTracer::replay_texel(uint32_t texel) const {
       const double low = static_cast<double>(stretch->low), high = static_cast<double>(stretch->high);
       const SliceStretchSums seen = sums_between(low, high);
       RayRecord record = record_of(low, high, seen);
-      const double distance = stretch_distance(surface_, *stretch, direction, (low + high) / 2);
+      const SliceHit middle{stretch->facet, stretch->weight,           (stretch->low + stretch->high) / 2,
+                            stretch->high,  stretch->inverse_distance, stretch->azimuth};
+      const double distance = hit_distance(surface_, middle, direction);
       const glm::dvec2 place = glm::dvec2(x, y) + distance * direction;
       const glm::dvec2 size(surface_.width(), surface_.height());
       const glm::dvec2 tile = glm::floor((place + 0.5) / size);

@@ -3,9 +3,14 @@
 // On a height field every direction at one azimuth lies in one vertical half-plane, so one walk over the
 // crossings of that plane with the triangle edges serves all elevations (FACTS.md §5; the horizon idea is
 // Max, "Horizon mapping", 1988, the exact integral over a slice Jiménez et al., "Practical real-time
-// strategies for accurate indirect occlusion", 2016). Each crossing steeper than all before it makes the
-// stretch of facet before it visible between two elevations; what stays above the horizon is sky. α, E₀ and
-// every link come from closed forms.
+// strategies for accurate indirect occlusion", 2016). What stays above the steepest crossing is sky: α and E₀
+// come from closed forms. Each crossing steeper than all before it makes the stretch of facet before it
+// visible between two elevations. Those stretches are many and most of them tiny, so links come from a sample
+// of them: the slice below the horizon is cut into strata of equal angle, about twelve in a whole slice of a
+// texel and four in one of a facet, and each stratum gives its cosine weight, in closed form, to what lies at
+// one elevation within it, drawn in proportion to the cosine and well spread over the azimuths. Measured, on
+// WallHeight at 0.1 m and smooth shapes at 0.45 m with 64 azimuths, E₁ is then off by a tenth more than with
+// every stretch, at a quarter of the links.
 //
 // Sixteen neighbours along x (aligned to multiples of sixteen) share their azimuths, turned by a hash of
 // their place: the same crossings then serve sixteen receivers, and their heights lie side by side in memory.

@@ -9,22 +9,19 @@
 namespace hemibake {
 namespace {
 
-// Texels: a stretch longer than this is split where patches are texels.
-constexpr double kLongestPiece = 0.25;
-
-// A stretch in its slice: the line z = gradient · r − depth from the start, where r is the horizontal
-// distance.
-struct StretchLine {
+// A facet in a slice: the line z = gradient · r − depth from the start, where r is the horizontal distance.
+struct FacetLine {
   double gradient;
-  double depth;      // ≥ 0: how far the facet's plane passes below the start
-  double near, far;  // ends of the stretch
+  double depth;  // ≥ 0: how far the facet's plane passes below the start
+  double far;    // where the path leaves it
 
-  StretchLine(const Surface& surface, const Stretch& stretch, glm::dvec2 direction) {
-    const glm::dvec3 normal = facet_normal(surface, stretch.facet);
+  // `high` is the slope there.
+  FacetLine(const Surface& surface, uint32_t facet, glm::dvec2 direction, float high,
+            float inverse_distance) {
+    const glm::dvec3 normal = facet_normal(surface, facet);
     gradient = -(normal.x * direction.x + normal.y * direction.y) / normal.z;
-    far = 1 / static_cast<double>(stretch.inverse_distance);
-    depth = std::max(0.0, (gradient - static_cast<double>(stretch.high)) * far);
-    near = std::min(far, distance_at(static_cast<double>(stretch.low)));
+    far = 1 / static_cast<double>(inverse_distance);
+    depth = std::max(0.0, (gradient - static_cast<double>(high)) * far);
   }
   double distance_at(double slope) const { return slope < gradient ? depth / (gradient - slope) : far; }
   double slope_at(double distance) const { return gradient - depth / distance; }
@@ -40,14 +37,16 @@ SliceStretchSums sums_between(double low_slope, double high_slope) {
           (sin_high * sin_high - sin_low * sin_low) / 2};
 }
 
-double stretch_distance(const Surface& surface, const Stretch& stretch, glm::dvec2 direction, double slope) {
-  return StretchLine(surface, stretch, direction).distance_at(slope);
+double hit_distance(const Surface& surface, const SliceHit& hit, glm::dvec2 direction) {
+  const FacetLine line(surface, hit.facet, direction, hit.high, hit.inverse_distance);
+  return std::min(line.far, line.distance_at(static_cast<double>(hit.slope)));
 }
 
 Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 direction,
                      double max_distance) {
-  const StretchLine line(surface, stretch, direction);
-  const bool near_inside = line.ray_length(line.near) < max_distance;
+  const FacetLine line(surface, stretch.facet, direction, stretch.high, stretch.inverse_distance);
+  const double near = std::min(line.far, line.distance_at(static_cast<double>(stretch.low)));
+  const bool near_inside = line.ray_length(near) < max_distance;
   const bool far_inside = line.ray_length(line.far) < max_distance;
   if (near_inside && far_inside) return stretch;
   Stretch clipped = stretch;
@@ -56,7 +55,7 @@ Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 
   const double g = line.gradient, d = line.depth, scale = 1 + g * g;
   const double discriminant = max_distance * max_distance * scale - d * d;
   const double root = std::sqrt(std::max(0.0, discriminant));
-  const double enter = std::max(line.near, (g * d - root) / scale),
+  const double enter = std::max(near, (g * d - root) / scale),
                leave = std::min(line.far, (g * d + root) / scale);
   if (discriminant <= 0 || enter >= leave) {
     clipped.high = clipped.low;
@@ -71,33 +70,32 @@ Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 
   return clipped;
 }
 
-void append_stretch_links(const Surface& surface, const SliceOptions& options, const Stretch& stretch,
-                          double weight, double rim, glm::dvec2 start, glm::dvec2 direction,
-                          std::vector<Link>& links) {
+void append_hits(const Stretch& stretch, double rim, float strata_per_weight, std::vector<SliceHit>& hits) {
+  const double low = static_cast<double>(stretch.low), high = static_cast<double>(stretch.high);
+  const int pieces = 1 + static_cast<int>(stretch.weight * strata_per_weight);
+  double begin = low;
+  for (int piece = 1; piece <= pieces; ++piece) {
+    const double share = static_cast<double>(piece) / pieces;
+    const double end = std::tan((1 - share) * std::atan(low) + share * std::atan(high));
+    const SliceStretchSums sums = sums_between(begin, end);
+    const double weight = sums.vertical - rim * sums.horizontal;
+    hits.push_back({stretch.facet, static_cast<float>(weight), static_cast<float>((begin + end) / 2),
+                    stretch.high, stretch.inverse_distance, stretch.azimuth});
+    begin = end;
+  }
+}
+
+void append_links(const Surface& surface, const SliceOptions& options, const SliceHit& hit, double weight,
+                  glm::dvec2 start, glm::dvec2 direction, std::vector<Link>& links) {
   if (options.patches == Patches::kFacets) {
-    links.push_back({stretch.facet, static_cast<float>(weight)});
+    links.push_back({hit.facet, static_cast<float>(weight)});
     return;
   }
-  const auto cosine_between = [&](double low, double high) {
-    const SliceStretchSums sums = sums_between(low, high);
-    return sums.vertical - rim * sums.horizontal;
-  };
-  const StretchLine line(surface, stretch, direction);
-  const int pieces = 1 + static_cast<int>((line.far - line.near) / kLongestPiece);
-  const double low_end = static_cast<double>(stretch.low), high_end = static_cast<double>(stretch.high);
-  const double whole = cosine_between(low_end, high_end);
-  double low = low_end;
-  for (int piece = 1; piece <= pieces; ++piece) {
-    const double end = line.near + (line.far - line.near) * piece / pieces;
-    const double high = piece == pieces ? high_end : std::clamp(line.slope_at(end), low, high_end);
-    const double share = pieces == 1 ? 1 : cosine_between(low, high) / whole;
-    const glm::dvec2 position = start + line.distance_at((low + high) / 2) * direction;
-    if (options.texel_links == TexelLinks::kNearest) {
-      add_nearest_link(surface, position, weight * share, links);
-    } else {
-      add_bilinear_links(surface, position, weight * share, links);
-    }
-    low = high;
+  const glm::dvec2 position = start + hit_distance(surface, hit, direction) * direction;
+  if (options.texel_links == TexelLinks::kNearest) {
+    add_nearest_link(surface, position, weight, links);
+  } else {
+    add_bilinear_links(surface, position, weight, links);
   }
 }
 

@@ -1,4 +1,4 @@
-// From the stretches of surface that a receiver sees along its slices to the links of its row.
+// From what a receiver sees along its slices to the links of its row.
 #pragma once
 
 #include <span>
@@ -15,18 +15,20 @@ struct SliceStretchSums {
 };
 SliceStretchSums sums_between(double low_slope, double high_slope);
 
-// Horizontal distance, texels, at which a slope between low and high meets the stretch.
-double stretch_distance(const Surface& surface, const Stretch& stretch, glm::dvec2 direction, double slope);
+// Horizontal distance of a hit, texels. `direction` is the azimuth's.
+double hit_distance(const Surface& surface, const SliceHit& hit, glm::dvec2 direction);
 
 // The piece of a stretch nearer than `max_distance` texels along the ray; nothing where low ≥ high.
 // `direction` is the azimuth's.
 Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 direction,
                      double max_distance);
 
-// Appends the links of a stretch worth `weight`. Where patches are texels, a stretch longer than half a texel
-// is split; `start` is the receiver's place in texels, `rim` the lowest slope it sees at this azimuth.
-void append_stretch_links(const Surface& surface, const SliceOptions& options, const Stretch& stretch,
-                          double weight, double rim, glm::dvec2 start, glm::dvec2 direction,
-                          std::vector<Link>& links);
+// Appends hits that stand for all of a stretch, as finely as a walk samples; `rim` is the lowest slope the
+// receiver sees at this azimuth.
+void append_hits(const Stretch& stretch, double rim, float strata_per_weight, std::vector<SliceHit>& hits);
+
+// Appends the links of a hit worth `weight`. `start` is the receiver's place in texels.
+void append_links(const Surface& surface, const SliceOptions& options, const SliceHit& hit, double weight,
+                  glm::dvec2 start, glm::dvec2 direction, std::vector<Link>& links);
 
 }  // namespace hemibake

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "sampling/low_discrepancy.h"
 #include "tracers/slice_segments.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -11,7 +12,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // Must come after highway.h.
-#include <hwy/contrib/math/math-inl.h>
+#include "tracers/slice_strata-inl.h"
 
 #ifndef HEMIBAKE_SLICE_WALK_ONCE
 #define HEMIBAKE_SLICE_WALK_ONCE
@@ -24,9 +25,6 @@ constexpr float kHorizonTolerance = 1e-4f;
 constexpr float kLinkTolerance = 1e-3f;
 // Longer sides of the map after which a walk ends in any case.
 constexpr double kFarthestMaps = 1e4;
-// The slope of lanes that are not walked: above every other.
-constexpr float kClosed = 1e30f;
-
 // i modulo n for i not far from 0..n-1.
 inline int wrap_near(int i, int n) {
   if (i < 0) i += n;
@@ -40,77 +38,6 @@ inline int wrap_near(int i, int n) {
 HWY_BEFORE_NAMESPACE();
 namespace hemibake {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using F = hn::CappedTag<float, kSliceLanes>;
-using V = hn::Vec<F>;
-constexpr F kF;
-constexpr size_t kWidth = hn::MaxLanes(F());
-constexpr size_t kParts = kSliceLanes / kWidth;
-
-// One number per lane of a packet.
-struct Vectors {
-  V part[kParts];
-};
-
-HWY_INLINE V broadcast(double value) { return hn::Set(kF, static_cast<float>(value)); }
-
-HWY_INLINE Vectors load(const LaneArray<float>& values) {
-  Vectors v;
-  for (size_t p = 0; p < kParts; ++p) v.part[p] = hn::LoadU(kF, values.data() + p * kWidth);
-  return v;
-}
-
-// a · x + b · y
-HWY_INLINE Vectors along(const LaneArray<float>& a, const LaneArray<float>& b, double x, double y) {
-  const Vectors va = load(a), vb = load(b);
-  Vectors v;
-  for (size_t p = 0; p < kParts; ++p)
-    v.part[p] = hn::MulAdd(va.part[p], broadcast(x), hn::Mul(vb.part[p], broadcast(y)));
-  return v;
-}
-
-// ∫ over the elevations θ from slope m to the zenith of cos²θ and of sinθ cosθ.
-struct SkyDirection {
-  V horizontal, vertical;
-};
-
-HWY_INLINE SkyDirection direction_above(V m) {
-  const V half = hn::Set(kF, 0.5f), quarter_turn = hn::Set(kF, 0.785398163f);
-  const V cos2 = hn::Div(hn::Set(kF, 1.0f), hn::MulAdd(m, m, hn::Set(kF, 1.0f)));
-  return {hn::NegMulAdd(half, hn::MulAdd(m, cos2, hn::Atan(kF, m)), quarter_turn), hn::Mul(half, cos2)};
-}
-
-// The same of cosθ: 1 − sinθ, without cancellation near the zenith.
-HWY_INLINE V uniform_above(V m) {
-  const V one = hn::Set(kF, 1.0f), cos2 = hn::Div(one, hn::MulAdd(m, m, one));
-  const V sine = hn::Mul(hn::Abs(m), hn::Sqrt(cos2));
-  return hn::IfThenElse(hn::Lt(m, hn::Zero(kF)), hn::Add(one, sine), hn::Div(cos2, hn::Add(one, sine)));
-}
-
-// The same of the cosine to a normal whose plane has the slope `rim` in this slice, over normal.z.
-HWY_INLINE V cosine_above(V m, V rim) {
-  const SkyDirection sky = direction_above(m);
-  return hn::NegMulAdd(rim, sky.horizontal, sky.vertical);
-}
-
-HWY_INLINE void add_lanes(V v, double* sum) {
-  alignas(64) float values[kWidth];
-  hn::Store(v, kF, values);
-  for (size_t i = 0; i < kWidth; ++i) sum[i] += static_cast<double>(values[i]);
-}
-
-HWY_INLINE void add_sky(const Vectors& slope, const glm::dvec2& direction, SliceSums& sums) {
-  for (size_t p = 0; p < kParts; ++p) {
-    const size_t lane = p * kWidth;
-    const SkyDirection sky = direction_above(slope.part[p]);
-    add_lanes(uniform_above(slope.part[p]), sums.uniform.data() + lane);
-    add_lanes(hn::Mul(sky.horizontal, broadcast(direction.x)), sums.x.data() + lane);
-    add_lanes(hn::Mul(sky.horizontal, broadcast(direction.y)), sums.y.data() + lane);
-    add_lanes(sky.vertical, sums.z.data() + lane);
-  }
-}
-
 // Where the lanes of a packet start, and what they have met.
 struct Lanes {
   Vectors base, rise;  // the start is `rise` above `base`
@@ -136,7 +63,7 @@ class PathWalk {
   }
 
   // Adds what the packet sees along the path.
-  template <bool kStretches>
+  template <WalkFor kWhat>
   void walk(const SlicePacket& packet, uint32_t azimuth, PacketView& view) {
     const SlicePath& path = segments_.path();
     Lanes lanes = start(packet);
@@ -152,12 +79,17 @@ class PathWalk {
         segment += skipped;
         if (skipped > 0) continue;
       }
-      cross_segment<kStretches>(packet, azimuth, segment, lanes, view);
+      if constexpr (kWhat == WalkFor::kStretches) {
+        find_stretches(packet, azimuth, segment, lanes, view);
+      } else {
+        raise_horizon(packet, segment, lanes);
+      }
       ++segment;
     }
     if (blocks_below_)
       for (V& slope : lanes.slope.part) slope = hn::Max(slope, hn::Zero(kF));
     add_sky(lanes.slope, path.direction, view.sky);
+    if constexpr (kWhat == WalkFor::kHits) find_hits(packet, azimuth, lanes, view);
   }
 
  private:
@@ -165,9 +97,14 @@ class PathWalk {
   bool ended(const Lanes& lanes, int segment) const;
   void count_cut_short(const Lanes& lanes, int segment, PacketView& view) const;
   int segments_to_skip(const SlicePacket& packet, const Lanes& lanes, int segment);
-  template <bool kStretches>
-  void cross_segment(const SlicePacket& packet, uint32_t azimuth, int segment, Lanes& lanes,
-                     PacketView& view);
+  void raise_horizon(const SlicePacket& packet, int segment, Lanes& lanes);
+  void find_stretches(const SlicePacket& packet, uint32_t azimuth, int segment, Lanes& lanes,
+                      PacketView& view);
+  void find_hits(const SlicePacket& packet, uint32_t azimuth, Lanes& lanes, PacketView& view);
+  bool nothing_left(const Lanes& lanes, int segment) const;
+  void hit_strata(const SlicePacket& packet, uint32_t azimuth, int segment, Lanes& lanes, PacketView& view);
+  template <class Meet>
+  void cross_segment(const SlicePacket& packet, int segment, const Lanes& lanes, const Meet& meet);
   uint32_t facet_at(glm::ivec2 corner, const FacetBefore& facet, int lane) const;
 
   float inverse_distance(int segment) const { return inverse_step_ / static_cast<float>(segment); }
@@ -188,6 +125,8 @@ class PathWalk {
   float inverse_step_ = 0;
   int last_segment_;
   bool blocks_below_;  // a map that repeats for ever meets whatever goes down
+  Strata strata_;      // of the packet at hand
+  LaneArray<uint8_t> next_stratum_;
 };
 
 HWY_INLINE Lanes PathWalk::start(const SlicePacket& packet) const {
@@ -203,9 +142,9 @@ HWY_INLINE Lanes PathWalk::start(const SlicePacket& packet) const {
     const int walked = std::clamp(packet.lanes - static_cast<int>(p * kWidth), 0, static_cast<int>(kWidth));
     V slope =
         hn::IfThenElse(hn::FirstN(kF, static_cast<size_t>(walked)), lanes.rim.part[p], hn::Set(kF, kClosed));
-    if (blocks_below_ && !options_.with_stretches) slope = hn::Max(slope, hn::Zero(kF));
+    if (blocks_below_ && options_.what != WalkFor::kStretches) slope = hn::Max(slope, hn::Zero(kF));
     lanes.slope.part[p] = slope;
-    if (options_.with_stretches) lanes.above.part[p] = cosine_above(slope, lanes.rim.part[p]);
+    if (options_.what == WalkFor::kStretches) lanes.above.part[p] = cosine_above(slope, lanes.rim.part[p]);
   }
   return lanes;
 }
@@ -255,9 +194,10 @@ HWY_INLINE int PathWalk::segments_to_skip(const SlicePacket& packet, const Lanes
   return 0;
 }
 
-template <bool kStretches>
-HWY_INLINE void PathWalk::cross_segment(const SlicePacket& packet, uint32_t azimuth, int segment,
-                                        Lanes& lanes, PacketView& view) {
+// Calls meet(part, slope, corner, crossing, facet before it) for every crossing of a segment, by distance.
+template <class Meet>
+HWY_INLINE void PathWalk::cross_segment(const SlicePacket& packet, int segment, const Lanes& lanes,
+                                        const Meet& meet) {
   const glm::ivec2 corner = place(packet, segments_.windows(segment).corner[0]);
   const float* heights = field_.heights.at(corner.x, corner.y);
   const SegmentView crossed = segments_.crossings(segment);
@@ -268,30 +208,113 @@ HWY_INLINE void PathWalk::cross_segment(const SlicePacket& packet, uint32_t azim
       const V a = hn::LoadU(kF, heights + crossing.a + p * kWidth);
       const V b = hn::LoadU(kF, heights + crossing.b + p * kWidth);
       const V along_edge = hn::MulSub(fraction, hn::Sub(b, a), lanes.rise.part[p]);
-      const V slope = hn::Mul(hn::Add(hn::Sub(a, lanes.base.part[p]), along_edge), inverse);
-      if constexpr (!kStretches) {
-        lanes.slope.part[p] = hn::Max(lanes.slope.part[p], slope);
-        continue;
-      }
-      if (hn::AllTrue(kF, hn::Le(slope, lanes.slope.part[p]))) continue;
-      const V above = cosine_above(slope, lanes.rim.part[p]);
-      // What rounding leaves nothing of is left to the next stretch.
-      const auto seen = hn::And(hn::Gt(slope, lanes.slope.part[p]), hn::Lt(above, lanes.above.part[p]));
-      alignas(64) float low[kWidth], high[kWidth], weight[kWidth];
-      hn::Store(lanes.slope.part[p], kF, low);
-      hn::Store(slope, kF, high);
-      hn::Store(hn::Sub(lanes.above.part[p], above), kF, weight);
-      lanes.slope.part[p] = hn::IfThenElse(seen, slope, lanes.slope.part[p]);
-      lanes.above.part[p] = hn::IfThenElse(seen, above, lanes.above.part[p]);
-      uint8_t bytes[8] = {};
-      hn::StoreMaskBits(kF, seen, bytes);
-      for (uint32_t bits = bytes[0] | static_cast<uint32_t>(bytes[1]) << 8; bits != 0; bits &= bits - 1) {
-        const size_t l = hwy::Num0BitsBelowLS1Bit_Nonzero32(bits), lane = p * kWidth + l;
-        view.stretches[lane].push_back({facet_at(corner, crossed.facets[i], static_cast<int>(lane)),
-                                        weight[l], low[l], high[l], crossing.inverse_distance, azimuth});
-      }
+      meet(p, hn::Mul(hn::Add(hn::Sub(a, lanes.base.part[p]), along_edge), inverse), corner, crossing,
+           crossed.facets[i]);
     }
   }
+}
+
+HWY_INLINE void PathWalk::raise_horizon(const SlicePacket& packet, int segment, Lanes& lanes) {
+  cross_segment(packet, segment, lanes,
+                [&](size_t p, V slope, const glm::ivec2&, const Crossing&, const FacetBefore&)
+                    HWY_ATTR { lanes.slope.part[p] = hn::Max(lanes.slope.part[p], slope); });
+}
+
+// Calls act(lane of the part) for every lane of the mask.
+template <class Act>
+HWY_INLINE void for_each_lane(hn::Mask<F> mask, const Act& act) {
+  uint8_t bytes[8] = {};
+  hn::StoreMaskBits(kF, mask, bytes);
+  for (uint32_t bits = bytes[0] | static_cast<uint32_t>(bytes[1]) << 8; bits != 0; bits &= bits - 1)
+    act(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
+}
+
+HWY_INLINE void PathWalk::find_stretches(const SlicePacket& packet, uint32_t azimuth, int segment,
+                                         Lanes& lanes, PacketView& view) {
+  cross_segment(
+      packet, segment, lanes,
+      [&](size_t p, V slope, const glm::ivec2& corner, const Crossing& crossing, const FacetBefore& facet)
+          HWY_ATTR {
+            if (hn::AllTrue(kF, hn::Le(slope, lanes.slope.part[p]))) return;
+            const V above = cosine_above(slope, lanes.rim.part[p]);
+            // What rounding leaves nothing of is left to the next stretch.
+            const auto seen = hn::And(hn::Gt(slope, lanes.slope.part[p]), hn::Lt(above, lanes.above.part[p]));
+            alignas(64) float low[kWidth], high[kWidth], weight[kWidth];
+            hn::Store(lanes.slope.part[p], kF, low);
+            hn::Store(slope, kF, high);
+            hn::Store(hn::Sub(lanes.above.part[p], above), kF, weight);
+            lanes.slope.part[p] = hn::IfThenElse(seen, slope, lanes.slope.part[p]);
+            lanes.above.part[p] = hn::IfThenElse(seen, above, lanes.above.part[p]);
+            for_each_lane(seen, [&](size_t l) {
+              const size_t lane = p * kWidth + l;
+              view.stretches[lane].push_back({facet_at(corner, facet, static_cast<int>(lane)), weight[l],
+                                              low[l], high[l], crossing.inverse_distance, azimuth});
+            });
+          });
+}
+
+// Follows the path again, up to what the samples of the strata below the horizon meet.
+HWY_INLINE void PathWalk::find_hits(const SlicePacket& packet, uint32_t azimuth, Lanes& lanes,
+                                    PacketView& view) {
+  const Vectors shift = load(packet.place), per_weight = load(packet.strata_per_weight);
+  const float turn = static_cast<float>(radical_inverse(2, azimuth));
+  strata_.most = 0;
+  for (size_t p = 0; p < kParts; ++p) {
+    const V sum = hn::Add(shift.part[p], hn::Set(kF, turn));
+    add_strata(p, lanes.rim.part[p], lanes.slope.part[p], per_weight.part[p], hn::Sub(sum, hn::Floor(sum)),
+               strata_);
+  }
+  if (strata_.most == 0) return;
+  next_stratum_ = {};
+  for (size_t p = 0; p < kParts; ++p) lanes.slope.part[p] = hn::LoadU(kF, strata_.slope[0] + p * kWidth);
+  for (int segment = 0;;) {
+    if (!reaches_map(place(packet, segments_.windows(segment).corner[0])) || segment > last_segment_) return;
+    if (segment > 0) {
+      if (nothing_left(lanes, segment)) return;
+      const int skipped = segments_to_skip(packet, lanes, segment);
+      segment += skipped;
+      if (skipped > 0) continue;
+    }
+    hit_strata(packet, azimuth, segment, lanes, view);
+    ++segment;
+  }
+}
+
+// Whether no lane can meet its next sample from `segment` on. A little below a slope of zero what a wrapping
+// map meets may lie for ever away.
+HWY_INLINE bool PathWalk::nothing_left(const Lanes& lanes, int segment) const {
+  const V near = hn::Set(kF, inverse_distance(segment)), zero = hn::Zero(kF);
+  bool all = true;
+  for (size_t p = 0; p < kParts; ++p) {
+    const V next = lanes.slope.part[p];
+    const auto level = hn::And(hn::Ge(next, hn::Set(kF, -kLinkTolerance)), hn::Lt(next, zero));
+    const V enough = hn::IfThenElse(level, hn::Set(kF, kHorizonTolerance), next);
+    all = all && hn::AllTrue(kF, hn::Lt(hn::Mul(lanes.to_top.part[p], near), enough));
+  }
+  return all;
+}
+
+HWY_INLINE void PathWalk::hit_strata(const SlicePacket& packet, uint32_t azimuth, int segment, Lanes& lanes,
+                                     PacketView& view) {
+  cross_segment(
+      packet, segment, lanes,
+      [&](size_t p, V slope, const glm::ivec2& corner, const Crossing& crossing,
+          const FacetBefore& before) HWY_ATTR {
+        const auto met = hn::Ge(slope, lanes.slope.part[p]);
+        if (hn::AllFalse(kF, met)) return;
+        alignas(64) float high[kWidth], next[kWidth];
+        hn::Store(slope, kF, high);
+        hn::Store(lanes.slope.part[p], kF, next);
+        for_each_lane(met, [&](size_t l) {
+          const size_t lane = p * kWidth + l;
+          const uint32_t facet = facet_at(corner, before, static_cast<int>(lane));
+          for (; next[l] <= high[l]; next[l] = strata_.slope[next_stratum_[lane]][lane]) {
+            const float weight = strata_.weight[next_stratum_[lane]++][lane];
+            view.hits[lane].push_back({facet, weight, next[l], high[l], crossing.inverse_distance, azimuth});
+          }
+        });
+        lanes.slope.part[p] = hn::Load(kF, next);
+      });
 }
 
 HWY_INLINE uint32_t PathWalk::facet_at(glm::ivec2 corner, const FacetBefore& facet, int lane) const {
@@ -310,7 +333,7 @@ HWY_INLINE uint32_t PathWalk::facet_at(glm::ivec2 corner, const FacetBefore& fac
   return 2 * cell + static_cast<uint32_t>(facet.half);
 }
 
-template <bool kStretches>
+template <WalkFor kWhat>
 void walk_all(const SliceField& field, const SlicePaths& paths, const WalkOptions& options,
               std::span<const SlicePacket> packets, std::span<PacketView> views) {
   // Path after path, so that a path's crossings and the heights it meets stay in the caches.
@@ -326,17 +349,20 @@ void walk_all(const SliceField& field, const SlicePaths& paths, const WalkOption
         turn = packets[index].turn;
         walk.begin_path(paths.path_index(turn, azimuth));
       }
-      walk.walk<kStretches>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
+      walk.walk<kWhat>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
     }
   }
 }
 
 void walk_packets(const SliceField& field, const SlicePaths& paths, const WalkOptions& options,
                   std::span<const SlicePacket> packets, std::span<PacketView> views) {
-  if (options.with_stretches) {
-    walk_all<true>(field, paths, options, packets, views);
-  } else {
-    walk_all<false>(field, paths, options, packets, views);
+  switch (options.what) {
+    case WalkFor::kSky:
+      return walk_all<WalkFor::kSky>(field, paths, options, packets, views);
+    case WalkFor::kHits:
+      return walk_all<WalkFor::kHits>(field, paths, options, packets, views);
+    case WalkFor::kStretches:
+      return walk_all<WalkFor::kStretches>(field, paths, options, packets, views);
   }
 }
 

@@ -15,6 +15,9 @@ namespace hemibake {
 template <class T>
 using LaneArray = std::array<T, kSliceLanes>;
 
+// Most samples for links of a slice that holds the mean share of its receiver's hemisphere.
+inline constexpr int kStrataPerSlice = 12;
+
 // Receivers side by side: lane l starts in the cell (x + l, y).
 struct SlicePacket {
   int x = 0, y = 0;
@@ -24,6 +27,8 @@ struct SlicePacket {
   LaneArray<float> base{};                // height there, texels
   LaneArray<float> plane_x{}, plane_y{};  // slopes of the plane through it on which the start lies
   LaneArray<float> rim_x{}, rim_y{};      // slopes of the plane normal to the receiver's normal
+  // For links: how finely slices are sampled, samples per unit of weight, and where in their strata, 0..1.
+  LaneArray<float> strata_per_weight{}, place{};
 };
 
 // ∫ over a part of every slice of 1 and of the direction d, in solid angle times azimuths / 2π.
@@ -40,16 +45,30 @@ struct Stretch {
   uint32_t azimuth;
 };
 
+// A piece of facet that a receiver sees at one slope of an azimuth, standing for the slopes around it.
+struct SliceHit {
+  uint32_t facet;
+  float weight;            // ∫ cosine to the receiver's normal, over normal.z, as in SliceSums
+  float slope;             // at which it is seen
+  float high;              // slope of where the path leaves the facet
+  float inverse_distance;  // 1 / horizontal distance of that place, 1/texels
+  uint32_t azimuth;
+};
+
 // What every lane of a packet sees.
 struct PacketView {
   SliceSums hemisphere;                       // everything above the plane normal to the receiver's normal
   SliceSums sky;                              // what of it is sky
-  LaneArray<std::vector<Stretch>> stretches;  // by azimuth, then by distance
+  LaneArray<std::vector<SliceHit>> hits;      // by azimuth, then by distance
+  LaneArray<std::vector<Stretch>> stretches;  // the same
   LaneArray<uint32_t> cut_short{};
 };
 
+// What a walk is for, besides the sky: a sample of what is seen below the horizon, or all of it.
+enum class WalkFor { kSky, kHits, kStretches };
+
 struct WalkOptions {
-  bool with_stretches = false;
+  WalkFor what = WalkFor::kSky;
   double max_distance =
       std::numeric_limits<double>::infinity();  // horizontal, texels: no need to go on beyond
 };

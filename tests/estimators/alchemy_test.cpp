@@ -184,8 +184,10 @@ TEST(Alchemy, GivesEveryStageOfTheBlur) {
   const AlchemyImages images = alchemy_images(buffer, options, 0.2);
   EXPECT_NE(images.raw.values, images.blurred_rows.values);
   EXPECT_NE(images.blurred_rows.values, images.blurred.values);
-  options.blur = false;
+  options.blur = BlurPasses::kNone;
   EXPECT_EQ(alchemy_images(buffer, options, 0.2).blurred.values, images.raw.values);
+  options.blur = BlurPasses::kRows;
+  EXPECT_EQ(alchemy_images(buffer, options, 0.2).blurred.values, images.blurred_rows.values);
   // (1 − sS)₊^k
   const Grid<double> s = alchemy_obscurance(buffer, options, 0.2);
   options.scale = 0.7;

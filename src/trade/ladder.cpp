@@ -1,0 +1,34 @@
+#include "trade/ladder.h"
+
+namespace hemibake {
+
+int top_ao_azimuths(Effort effort) {
+  switch (effort) {
+    case Effort::kQuick:
+      return 16;
+    case Effort::kNormal:
+      return 128;
+    default:
+      return 256;
+  }
+}
+
+int top_light_azimuths(Effort effort) { return effort == Effort::kQuick ? 8 : 64; }
+
+std::vector<int> rungs(Effort effort, int low, int high, int quick_high) {
+  if (effort == Effort::kQuick)
+    return low == quick_high ? std::vector<int>{low} : std::vector<int>{low, quick_high};
+  std::vector<int> result;
+  for (int rung = low; rung <= high; rung *= effort == Effort::kFull ? 2 : 4) result.push_back(rung);
+  if (result.back() != high) result.push_back(high);
+  return result;
+}
+
+std::vector<TradeRun> make_ladder(Effort effort, bool can_halve) {
+  std::vector<TradeRun> runs;
+  add_tracer_runs(effort, can_halve, runs);
+  add_estimator_runs(effort, runs);
+  return runs;
+}
+
+}  // namespace hemibake
