@@ -129,7 +129,7 @@ void write_matrix(hid_t file, const char* name, const Links& links) {
 void check_rows(const Links& links, const std::string& name) {
   expect_equal(links.blocks.size(), make_links(links.rows, 0).blocks.size(), "blocks of " + name);
   uint64_t rows = 0;
-  for (const LinkBlock& block : links.blocks) rows += block.rows.size();
+  for (const LinkBlock& block : links.blocks) rows += block.row_count();
   expect_equal(rows, uint64_t{links.rows}, "rows of " + name);
 }
 
@@ -200,8 +200,8 @@ std::array<uint64_t, 2> read_shape(hid_t group, const std::string& name) {
 }
 
 // Row begins relative to the block, from absolute ends.
-void set_row_begins(BlockRows& rows, const std::vector<uint64_t>& ends, uint64_t position,
-                    uint64_t first_row, const Links& links, uint64_t count, const std::string& name) {
+void set_row_begins(BlockRows& rows, const std::vector<uint64_t>& ends, uint64_t position, uint64_t first_row,
+                    const Links& links, uint64_t count, const std::string& name) {
   rows.row_begin.assign(1, 0);
   uint64_t previous = position;
   for (size_t row = 0; row < ends.size(); ++row) {
@@ -223,19 +223,19 @@ void check_block(const BlockRows& rows, uint64_t first_row, const Links& links, 
   for (size_t row = 0; row + 1 < rows.row_begin.size(); ++row)
     for (uint32_t k = rows.row_begin[row] + 1; k < rows.row_begin[row + 1]; ++k)
       if (rows.patches[k] <= rows.patches[k - 1])
-        refuse(fmt::format("in row {} of {} patch {} follows patch {}", first_row + row, name, rows.patches[k],
-                           rows.patches[k - 1]));
+        refuse(fmt::format("in row {} of {} patch {} follows patch {}", first_row + row, name,
+                           rows.patches[k], rows.patches[k - 1]));
 }
 
-void pack_rows(const BlockRows& rows, LinkBlock& block) {
+void pack_rows(const BlockRows& rows, Links& links, size_t index) {
   std::vector<Link> row;
   for (size_t i = 0; i + 1 < rows.row_begin.size(); ++i) {
     row.clear();
     for (uint32_t k = rows.row_begin[i]; k < rows.row_begin[i + 1]; ++k)
       row.push_back({rows.patches[k], rows.weights[k]});
-    append_row(block, row);
+    append_row(links.blocks[index], row);
   }
-  finish_block(block);
+  finish_block(links, index);
 }
 
 Links read_matrix(hid_t file, const std::string& name) {
@@ -261,7 +261,7 @@ Links read_matrix(hid_t file, const std::string& name) {
     indices.extract(block_rows.patches, block_rows.row_begin.back());
     weights.extract(block_rows.weights, block_rows.row_begin.back());
     check_block(block_rows, first_row, links, name);
-    pack_rows(block_rows, links.blocks[b]);
+    pack_rows(block_rows, links, b);
     position = ends.back();
   }
   if (position != indices.size())

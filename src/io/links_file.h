@@ -26,8 +26,8 @@ struct LinksFile {
 // gather: texel × patch. patches: patch × patch; null where that is the same matrix, which is then stored
 // once under both names. direct: E₀ of every patch, 0..π. Written block by block; entries of `provenance` are
 // attributes `hemibake:NAME` of the file as in io/image_io.h, with integers of 64 bits. The same bytes at
-// every run. Throws std::logic_error where sizes do not fit or a value is not finite; InputError where the file
-// cannot be written.
+// every run. Throws std::logic_error where sizes do not fit or a value is not finite; InputError where the
+// file cannot be written.
 void write_links(const std::filesystem::path& path, const Links& gather, const Links* patches,
                  std::span<const float> direct, const Provenance& provenance);
 

@@ -8,9 +8,11 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "transport/spill_file.h"
 
 namespace hemibake {
 namespace {
@@ -33,10 +35,11 @@ std::array<uint16_t, 3> pack_quantum(double quantum) {
 // Calls visit(row in the block, patch, multiple of the row's quantum) for every link.
 template <class Visit>
 void visit_links(const LinkBlock& block, const Visit& visit) {
-  const uint16_t* code = block.codes.data();
-  const uint16_t* weight = block.weights.data();
-  for (size_t row = 0; row < block.rows.size(); ++row) {
-    uint32_t group = first_group(block.rows[row], block.anchor);
+  const BlockView view = view_block(block);
+  const uint16_t* code = view.codes;
+  const uint16_t* weight = view.weights;
+  for (size_t row = 0; row < view.rows.size(); ++row) {
+    uint32_t group = first_group(view.rows[row], view.anchor);
     for (; *code != 0; ++code) {
       group += static_cast<uint32_t>(groups_ahead(*code));
       for (uint32_t columns = *code >> 8; columns != 0; columns &= columns - 1)
@@ -44,6 +47,11 @@ void visit_links(const LinkBlock& block, const Visit& visit) {
     }
     ++code;
   }
+}
+
+template <class Number>
+std::span<const std::byte> bytes_of(const std::vector<Number>& values) {
+  return std::as_bytes(std::span(values));
 }
 
 // What rounding a weight down left of its multiple.
@@ -76,8 +84,8 @@ double round_weights(std::span<const Link> row, std::vector<uint16_t>& multiples
   remainders.clear();
   double rounded = 0;
   for (size_t i = 0; i < row.size(); ++i) {
-    const double exact =
-        std::clamp(static_cast<double>(row[i].weight) / quantum, 0.0, kLargestMultiple), down = std::floor(exact);
+    const double exact = std::clamp(static_cast<double>(row[i].weight) / quantum, 0.0, kLargestMultiple),
+                 down = std::floor(exact);
     multiples[i] = static_cast<uint16_t>(down);
     rounded += down;
     if (down < kLargestMultiple) remainders.push_back({exact - down, static_cast<uint32_t>(i)});
@@ -86,9 +94,10 @@ double round_weights(std::span<const Link> row, std::vector<uint16_t>& multiples
   const double missing = std::clamp(total - rounded, 0.0, static_cast<double>(remainders.size()));
   const auto end = remainders.begin() + static_cast<std::ptrdiff_t>(missing);
   if (end != remainders.begin())
-    std::nth_element(remainders.begin(), end - 1, remainders.end(), [](const Remainder& a, const Remainder& b) {
-      return a.left != b.left ? a.left > b.left : a.index < b.index;
-    });
+    std::nth_element(remainders.begin(), end - 1, remainders.end(),
+                     [](const Remainder& a, const Remainder& b) {
+                       return a.left != b.left ? a.left > b.left : a.index < b.index;
+                     });
   for (auto remainder = remainders.begin(); remainder != end; ++remainder) ++multiples[remainder->index];
   return round_quantum(sum / (rounded + missing));
 }
@@ -120,16 +129,15 @@ uint64_t Links::count() const {
   return links;
 }
 
-size_t Links::memory_bytes() const {
-  size_t bytes = blocks.capacity() * sizeof(LinkBlock);
-  for (const LinkBlock& block : blocks)
-    bytes += block.rows.capacity() * sizeof(PackedRow) + block.codes.capacity() * sizeof(uint16_t) +
-             block.weights.capacity() * sizeof(uint16_t);
+size_t Links::stored_bytes() const {
+  size_t bytes = blocks.size() * sizeof(LinkBlock);
+  for (const LinkBlock& block : blocks) bytes += hemibake::stored_bytes(block);
   return bytes;
 }
 
-Links make_links(uint32_t rows, uint32_t columns) {
+Links make_links(uint32_t rows, uint32_t columns, std::shared_ptr<SpillFile> spill) {
   Links links;
+  links.spill = std::move(spill);
   links.rows = rows;
   links.columns = columns;
   links.blocks.resize((rows + Links::kRowsPerBlock - 1) / Links::kRowsPerBlock);
@@ -168,22 +176,53 @@ void append_row(LinkBlock& block, std::span<const Link> row) {
   block.rows.push_back(packed);
 }
 
-void finish_block(LinkBlock& block) {
-  block.rows.shrink_to_fit();
-  block.codes.shrink_to_fit();
-  block.weights.shrink_to_fit();
+size_t stored_bytes(const LinkBlock& block) {
+  const LinkBlock::Spilled& spilled = block.spilled;
+  if (spilled.bytes)
+    return spilled.rows * sizeof(PackedRow) + (spilled.codes + spilled.weights) * sizeof(uint16_t);
+  return bytes_of(block.rows).size() + bytes_of(block.codes).size() + bytes_of(block.weights).size();
+}
+
+void finish_block(Links& links, size_t index) {
+  LinkBlock& block = links.blocks[index];
+  if (!links.spill) {
+    block.rows.shrink_to_fit();
+    block.codes.shrink_to_fit();
+    block.weights.shrink_to_fit();
+    return;
+  }
+  const std::byte* bytes =
+      links.spill->store({bytes_of(block.rows), bytes_of(block.codes), bytes_of(block.weights)});
+  block.spilled = {bytes, block.rows.size(), block.codes.size(), block.weights.size()};
+  block.rows = {};
+  block.codes = {};
+  block.weights = {};
+}
+
+BlockView view_block(const LinkBlock& block) {
+  const LinkBlock::Spilled& spilled = block.spilled;
+  if (!spilled.bytes) return {block.anchor, block.rows, block.codes.data(), block.weights.data()};
+  const auto* rows = reinterpret_cast<const PackedRow*>(spilled.bytes);
+  const auto* codes = reinterpret_cast<const uint16_t*>(rows + spilled.rows);
+  return {block.anchor, {rows, spilled.rows}, codes, codes + spilled.codes};
+}
+
+void close_view(const LinkBlock& block) {
+  if (block.spilled.bytes) SpillFile::release(block.spilled.bytes, stored_bytes(block));
 }
 
 void unpack_block(const LinkBlock& block, BlockRows& rows) {
-  rows.row_begin.assign(block.rows.size() + 1, 0);
+  const BlockView view = view_block(block);
+  rows.row_begin.assign(view.rows.size() + 1, 0);
   rows.patches.clear();
   rows.weights.clear();
   visit_links(block, [&](size_t row, uint32_t patch, uint16_t multiple) {
     rows.patches.push_back(patch);
-    rows.weights.push_back(static_cast<float>(multiple * quantum_of(block.rows[row])));
+    rows.weights.push_back(static_cast<float>(multiple * quantum_of(view.rows[row])));
     ++rows.row_begin[row + 1];
   });
   std::partial_sum(rows.row_begin.begin(), rows.row_begin.end(), rows.row_begin.begin());
+  close_view(block);
 }
 
 std::vector<double> row_sums(const Links& links) {
@@ -193,7 +232,9 @@ std::vector<double> row_sums(const Links& links) {
       const LinkBlock& block = links.blocks[b];
       double* const of_block = sums.data() + b * Links::kRowsPerBlock;
       visit_links(block, [&](size_t row, uint32_t, uint16_t multiple) { of_block[row] += multiple; });
-      for (size_t row = 0; row < block.rows.size(); ++row) of_block[row] *= quantum_of(block.rows[row]);
+      const BlockView view = view_block(block);
+      for (size_t row = 0; row < view.rows.size(); ++row) of_block[row] *= quantum_of(view.rows[row]);
+      close_view(block);
     }
   });
   return sums;

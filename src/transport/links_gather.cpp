@@ -51,9 +51,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET == HWY_SCALAR
 
 // A machine without vectors: the same, a column at a time.
-void gather_block(const LinkBlock& block, const double* HWY_RESTRICT values, double* HWY_RESTRICT out) {
-  const uint16_t* HWY_RESTRICT code = block.codes.data();
-  const uint16_t* HWY_RESTRICT weight = block.weights.data();
+void gather_block(const BlockView& block, const double* HWY_RESTRICT values, double* HWY_RESTRICT out) {
+  const uint16_t* HWY_RESTRICT code = block.codes;
+  const uint16_t* HWY_RESTRICT weight = block.weights;
   for (size_t row = 0; row < block.rows.size(); ++row) {
     double sum = 0;
     const double* at = values + size_t{first_group(block.rows[row], block.anchor)} * kLanes;
@@ -75,7 +75,7 @@ constexpr size_t kWidth = hn::MaxLanes(F());
 constexpr size_t kParts = kLanes / kWidth;
 constexpr hn::FixedTag<uint16_t, kLanes> kWeights;
 constexpr hn::FixedTag<uint8_t, 2 * kLanes> kBytes;
-using Weights = hn::Vec<hn::FixedTag<uint16_t, kLanes>>;
+using Weights = hn::Vec<hn::FixedTag<uint16_t, kLanes> >;
 
 // The first kCount lanes.
 template <size_t kCount>
@@ -86,7 +86,7 @@ HWY_INLINE auto first_lanes(Weights weights) {
     constexpr hn::FixedTag<uint16_t, 4> kHalf;
     const auto half = hn::LowerHalf(kHalf, weights);
     if constexpr (kCount == 4) return half;
-    if constexpr (kCount == 2) return hn::LowerHalf(hn::Half<hn::FixedTag<uint16_t, 4>>(), half);
+    if constexpr (kCount == 2) return hn::LowerHalf(hn::Half<hn::FixedTag<uint16_t, 4> >(), half);
   }
 }
 
@@ -115,9 +115,9 @@ HWY_INLINE double total_of(const Sums& sums, const Sums& others) {
   return hn::GetLane(hn::SumOfLanes(kF, total));
 }
 
-void gather_block(const LinkBlock& block, const double* HWY_RESTRICT values, double* HWY_RESTRICT out) {
-  const uint16_t* HWY_RESTRICT code = block.codes.data();
-  const uint16_t* HWY_RESTRICT weight = block.weights.data();
+void gather_block(const BlockView& block, const double* HWY_RESTRICT values, double* HWY_RESTRICT out) {
+  const uint16_t* HWY_RESTRICT code = block.codes;
+  const uint16_t* HWY_RESTRICT weight = block.weights;
   for (size_t row = 0; row < block.rows.size(); ++row) {
     Sums sums, others;  // two chains of additions, taken in turn
     for (size_t p = 0; p < kParts; ++p) sums.part[p] = others.part[p] = hn::Zero(kF);
@@ -160,9 +160,11 @@ void gather(const Links& links, std::span<const double> values, std::span<double
     values = padded;
   }
   parallel_for(links.blocks.size(), 1, [&](size_t first, size_t last) {
-    for (size_t b = first; b < last; ++b)
+    for (size_t b = first; b < last; ++b) {
       HWY_DYNAMIC_DISPATCH(gather_block)
-      (links.blocks[b], values.data(), out.data() + b * Links::kRowsPerBlock);
+      (view_block(links.blocks[b]), values.data(), out.data() + b * Links::kRowsPerBlock);
+      close_view(links.blocks[b]);
+    }
   });
 }
 

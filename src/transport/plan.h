@@ -20,7 +20,11 @@ struct BakePlan {
   // The program with its libraries, before it has read anything (measured; most of it OpenImageIO's).
   static constexpr size_t kProgramBytes = size_t{150} << 20;
 
-  size_t memory_bytes() const { return kProgramBytes + surface_bytes + link_bytes + plane_bytes; }
+  bool spills = false;  // links go to a file instead of memory
+
+  size_t memory_bytes() const {
+    return kProgramBytes + surface_bytes + (spills ? 0 : link_bytes) + plane_bytes;
+  }
 };
 
 struct PlanOptions {

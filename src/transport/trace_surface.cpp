@@ -35,7 +35,7 @@ TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, 
         store(begin + i, row);
         if (links != nullptr) append_row(links->blocks[b], row.links);
       }
-      if (links != nullptr) finish_block(links->blocks[b]);
+      if (links != nullptr) finish_block(*links, b);
       progress.advance(counts[b].rays);
     }
   });
@@ -49,7 +49,8 @@ TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, 
 
 }  // namespace
 
-Visibility trace_surface(const Tracer& tracer, int width, int height, Patches patches, bool with_links) {
+Visibility trace_surface(const Tracer& tracer, int width, int height, Patches patches, bool with_links,
+                         const std::shared_ptr<SpillFile>& spill) {
   Visibility seen;
   seen.visible_fraction = Grid<float>(width, height);
   seen.direct_over_pi = Grid<float>(width, height);
@@ -64,7 +65,7 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
   const uint64_t receivers = texels + uint64_t{trace_patches ? tracer.patch_count() : 0};
   Progress progress("tracing", receivers * first_counts.rays, "ray");
 
-  if (with_links) seen.gather = make_links(texels, tracer.patch_count());
+  if (with_links) seen.gather = make_links(texels, tracer.patch_count(), spill);
   seen.counts = trace_blocks(
       texels, with_links ? &seen.gather : nullptr, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
@@ -77,7 +78,7 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
       });
   if (!trace_patches) return seen;
 
-  seen.patches = make_links(tracer.patch_count(), tracer.patch_count());
+  seen.patches = make_links(tracer.patch_count(), tracer.patch_count(), spill);
   seen.patch_direct_over_pi.resize(tracer.patch_count());
   const TracerCounts of_patches = trace_blocks(
       tracer.patch_count(), &seen.patches, progress,

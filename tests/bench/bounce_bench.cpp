@@ -60,7 +60,7 @@ void run(const BenchMap& map, int azimuths, const Rate& copy) {
                                         map.surface.height(), Patches::kFacets, true);
   const Links& links = seen.patches;
   std::vector<double> light(seen.patch_direct().begin(), seen.patch_direct().end()), next(light.size());
-  const Rate rate = best_rate(static_cast<double>(kBounces * links.memory_bytes()), [&] {
+  const Rate rate = best_rate(static_cast<double>(kBounces * links.stored_bytes()), [&] {
     for (int b = 0; b < kBounces; ++b) {
       gather(links, light, next);
       light.swap(next);
@@ -68,7 +68,7 @@ void run(const BenchMap& map, int azimuths, const Rate& copy) {
   });
   fmt::print("{:16} {:8.1f} {:8.1f} {:7.3f} {:9.2f} {:7.1f} % {:9.2f} {:7.1f} %\n", map.name,
              static_cast<double>(links.count()) / links.rows, 1e-6 * static_cast<double>(links.count()),
-             static_cast<double>(links.memory_bytes()) / static_cast<double>(links.count()),
+             static_cast<double>(links.stored_bytes()) / static_cast<double>(links.count()),
              rate.per_cpu_second, 100 * rate.per_cpu_second / copy.per_cpu_second, rate.per_second,
              100 * rate.per_second / copy.per_second);
 }
