@@ -17,6 +17,7 @@ CommandBody setup_compare(CLI::App& app);
 CommandBody setup_curves(CLI::App& app);
 CommandBody setup_export(CLI::App& app);
 CommandBody setup_fit(CLI::App& app);
+CommandBody setup_report(CLI::App& app);
 CommandBody setup_synth(CLI::App& app);
 CommandBody setup_bake(CLI::App& app);
 CommandBody setup_check(CLI::App& app);
@@ -40,6 +41,7 @@ constexpr std::array kCommands = {
     Command{"check", "check that light is neither made nor lost", setup_check},
     Command{"run", "bake, curves, fit and check in one go", setup_run},
     Command{"trade", "what every method costs and how far off it is, against a converged reference", setup_trade},
+    Command{"report", "one self-contained HTML page of what 'run' wrote", setup_report},
 };
 
 // One line, whatever a file name or a library puts into it.

@@ -24,7 +24,8 @@ const std::vector<CommandHelp> kCommands = {{"synth", {"--width", "--height", "-
                                             {"curves", {"--bins"}},
                                             {"fit", {"--model", "--abscissa", "--weights"}},
                                             {"check", {"--tolerance"}},
-                                            {"run", {"--bins"}}};
+                                            {"run", {"--bins"}},
+                                            {"report", {"--albedo", "--image-size"}}};
 
 TEST(Help, NamesEveryOptionOfTheDesign) {
   for (const CommandHelp& command : kCommands) {

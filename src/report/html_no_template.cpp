@@ -1,0 +1,8 @@
+// For a build without Node.
+#include "report/html_page.h"
+
+namespace hemibake {
+
+std::string_view page_template() { return {}; }
+
+}  // namespace hemibake

@@ -1,0 +1,121 @@
+// What the page is about: the data that `hemibake report` put into it (src/report/html_data.cpp).
+
+export type Rgb = [number, number, number];
+
+export interface Bin {
+  low: number;
+  high: number;
+  count: number;
+  mean?: number[]; // E_b/π at albedo 1; absent where count is 0
+  spread?: number[]; // standard deviation over the bin's texels
+}
+
+export interface Curves {
+  bounces: number;
+  has_counts: boolean;
+  bins: Bin[];
+}
+
+export type Language = 'glsl' | 'hlsl' | 'cpp';
+
+export interface Score {
+  rms: number;
+  max: number;
+}
+
+export interface ModelData {
+  id: 'bounded' | 'published' | 'notes';
+  title: string;
+  constants: Record<string, number>;
+  shader: Record<Language, string>;
+  score: Score | null;
+}
+
+export interface PlaneList {
+  width: number;
+  height: number;
+  stride: number;
+  list: { name: string; step: number }[];
+  ao_error: number;
+  irradiance_error_over_pi: number;
+  total_error_over_pi: number;
+}
+
+export interface Bake {
+  width: number;
+  height: number;
+  mean_ao: number | null;
+  mean_irradiance: number[];
+  mean_total: number | null;
+  mean_residual: number | null;
+  worst_residual: number | null;
+  texel_errors: Record<string, number>[];
+  planes: PlaneList;
+  settings: Record<string, string | number | boolean> | null;
+}
+
+export interface Fit {
+  model: string;
+  formula: string;
+  parameters: Record<string, { value: number; stderr: number | null }>;
+  rms: number;
+  max_error: number;
+  points: number;
+}
+
+export interface Check {
+  quantity: string;
+  value: number | null;
+  expected: number;
+  tolerance: number | null; // null: for information
+  passed: boolean;
+  detail: string;
+}
+
+export interface Report {
+  version: string;
+  title: string;
+  albedo: Rgb;
+  bake: Bake | null;
+  curves: Curves | null;
+  fits: Record<string, Fit> | null;
+  models: ModelData[];
+  other_models: { title: string; score: Score }[];
+  check: { passed: boolean; checks: Check[] } | null;
+  run: Record<string, unknown> | null;
+  trade: unknown;
+  pictures: { name: string; here: boolean }[];
+  sweep: { amplitude_m: number; curves: Curves }[];
+}
+
+export const report: Report = JSON.parse(document.getElementById('data')!.textContent!);
+
+// A bin with texels in it, at its place on the AO axis.
+export interface Point {
+  ao: number;
+  count: number;
+  mean: number[];
+  spread: number[];
+}
+
+export function pointsOf(curves: Curves): Point[] {
+  return curves.bins
+    .filter((bin) => bin.mean !== undefined)
+    .map((bin) => ({
+      ao: (bin.low + bin.high) / 2,
+      count: bin.count,
+      mean: bin.mean!,
+      spread: bin.spread!,
+    }));
+}
+
+// Σ ρᵇ E_b/π of a bin, the bounces after the last stored one as a geometric series, as the fits have it
+// (fitting/fit.h, total_over_pi).
+export function totalOf(mean: number[], albedo: number): number {
+  const last = mean.length - 1;
+  let sum = 0;
+  for (let b = last; b >= 0; --b) sum = sum * albedo + mean[b];
+  if (last < 2 || mean[last] >= mean[last - 1]) return sum;
+  const ratio = (albedo * mean[last]) / mean[last - 1];
+  return sum + (mean[last] * albedo ** last * ratio) / (1 - ratio);
+}

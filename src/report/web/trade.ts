@@ -1,0 +1,106 @@
+// The trade study: error against time of every tracer and estimator (src/trade/trade_file.h has the file's form).
+
+import { axis, chart, grid, legend, line, tooltip, type Option } from './chart';
+import { report } from './data';
+import { choice, h, number, place, say, table } from './dom';
+import { ramp, theme } from './theme';
+
+interface TradeError {
+  rmse: number;
+  bias: number;
+  max: number;
+}
+
+interface Run {
+  id: string;
+  method: string;
+  settings: Record<string, string | number>;
+  representative: boolean;
+  cpu_seconds: number;
+  memory_bytes: number;
+  error: Record<string, TradeError>;
+  models?: Record<string, Record<string, TradeError>>;
+}
+
+interface Trade {
+  effort?: string;
+  planes?: Record<string, string>;
+  runs: Run[];
+  fronts?: Record<string, { id: string; model: string; cpu_seconds: number; rmse: number }[]>;
+}
+
+export function showTrade(): void {
+  const trade = report.trade as Trade | null;
+  if (!trade || !Array.isArray(trade.runs))
+    return say('trade', 'No trade study in the folder: ‘hemibake trade MAP -o DIR’ makes trade.json.');
+  const names: Record<string, string> = { ao: 'AO α', direct: 'direct light E₀/π', first: 'first bounce E₁/π' };
+  const planes = Object.keys(trade.fronts ?? { ao: 0, direct: 0 });
+  let plane = planes[0];
+  const plot = chart('Error against processor seconds of every tracer and estimator, with the best at each cost', 460, () => option(trade, plane));
+  place('trade').append(
+    planes.length > 1
+      ? choice('Error of', planes.map((name) => [name, names[name] ?? `all light, albedo ${Number(name.replace('light.', '')) / 100}`]), plane,
+          (value) => { plane = value; plot.draw(); })
+      : '',
+    plot.element,
+    runs(trade, planes));
+}
+
+interface Spot {
+  value: [number, number];
+  run: Run;
+  model: string;
+}
+
+function option(trade: Trade, plane: string): Option {
+  const t = theme();
+  const methods = [...new Set(trade.runs.map((run) => run.method))];
+  const spots = (method: string): Spot[] =>
+    trade.runs.filter((run) => run.method === method).flatMap((run) => {
+      const found: Spot[] = [];
+      if (run.error[plane]) found.push({ value: [run.cpu_seconds, run.error[plane].rmse], run, model: '' });
+      const modelled = run.models?.bounded?.[plane];
+      if (modelled) found.push({ value: [run.cpu_seconds, modelled.rmse], run, model: 'bounded model' });
+      return found;
+    });
+  const series: Option[] = methods.map((method, i) => ({
+    type: 'scatter', name: method, data: spots(method).filter((spot) => spot.value[0] > 0 && spot.value[1] > 0),
+    color: ramp(methods.length > 1 ? i / (methods.length - 1) : 0),
+    symbol: ['circle', 'rect', 'triangle', 'diamond'][i % 4],
+    symbolSize: (_: unknown, { data }: { data: Spot }) => (data.run.representative ? 13 : 8),
+  }));
+  const front = trade.fronts?.[plane] ?? [];
+  if (front.length > 0)
+    series.push(line('best at each cost', front.map((each) => [each.cpu_seconds, each.rmse]), t.ink, { step: 'end', lineStyle: { width: 1.25, color: t.ink }, z: 1, tooltip: { show: false } }));
+  return {
+    legend: legend(),
+    grid: grid({ left: 70 }),
+    tooltip: tooltip({
+      trigger: 'item',
+      formatter: ({ data }: { data?: Spot }) => (data?.run
+        ? `<b>${data.run.method}</b> ${settings(data.run)}${data.model ? `<br>with the ${data.model}` : ''}<br>${number(data.value[0], 3)} CPU s, rms error ${number(data.value[1], 3)}`
+        : ''),
+    }),
+    xAxis: axis('processor seconds', { type: 'log' }),
+    yAxis: axis('rms error', { type: 'log', nameGap: 52 }),
+    series,
+  };
+}
+
+function settings(run: Run): string {
+  return Object.entries(run.settings).map(([name, value]) => `${name} ${value}`).join(', ');
+}
+
+function runs(trade: Trade, planes: string[]): HTMLElement {
+  const chosen = trade.runs.filter((run) => run.representative);
+  return h('div', {}, table(
+    ['method', 'settings', 'CPU s', 'MiB', ...planes.map((plane) => `${plane}: rms (bias)`)],
+    (chosen.length > 0 ? chosen : trade.runs).map((run) => [
+      run.method, settings(run), number(run.cpu_seconds, 3), (run.memory_bytes / 2 ** 20).toFixed(1),
+      ...planes.map((plane) => {
+        const error = run.error[plane] ?? run.models?.bounded?.[plane];
+        return error ? `${number(error.rmse, 3)} (${number(error.bias, 2)})` : '–';
+      }),
+    ]),
+    `Trade study${trade.effort ? `, effort ${trade.effort}` : ''}: one run of each method`, 2));
+}

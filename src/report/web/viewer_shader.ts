@@ -1,0 +1,99 @@
+// The picture's shaders: one lights every texel of the bake, one shows them on the canvas. The model is the very text
+// that `hemibake export --to glsl` writes.
+
+import type { Panel } from './viewer';
+
+export const kVertexShader = `#version 300 es
+in vec2 corner;
+void main() { gl_Position = vec4(corner, 0.0, 1.0); }
+`;
+
+// Lit texels, placed and scaled.
+export const kShowShader = `#version 300 es
+precision highp float;
+uniform sampler2D lit;
+uniform float canvas_height;
+uniform vec2 origin;            // texel at the canvas' upper left corner
+uniform float texels_per_pixel;
+out vec4 color;
+void main() {
+  vec2 pixel = vec2(gl_FragCoord.x, canvas_height - gl_FragCoord.y);
+  ivec2 texel = ivec2(floor(origin + pixel * texels_per_pixel));
+  bool outside = any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, textureSize(lit, 0)));
+  color = outside ? vec4(0.0) : texelFetch(lit, texel, 0);
+}
+`;
+
+// What a panel shows of a texel: a statement that sets `color`.
+const kPanels: Record<Panel, string> = {
+  off: 'color = vec4(encode(shown * ao), 1.0);',
+  model: 'color = vec4(encode(shown * multi_bounce_irradiance(ao, albedo)), 1.0);',
+  truth: 'color = vec4(encode(shown * traced_light(texel)), 1.0);',
+  bounce: 'color = vec4(encode(shown * one_bounce(texel)), 1.0);',
+  difference: 'color = signed_color(shown * (multi_bounce_irradiance(ao, albedo) - traced_light(texel)));',
+  'difference off': 'color = signed_color(shown * (vec3(ao) - traced_light(texel)));',
+};
+
+// Four planes a layer: α, E₀, E₁, E₂; E₃, … Integers, so that a texel is what the bake says and nothing between two.
+// A shader for each panel: software renderers work through every branch.
+export function lightShader(model: string, panel: Panel): string {
+  return `#version 300 es
+precision highp float;
+precision highp int;
+precision highp usampler2DArray;
+uniform usampler2DArray planes;
+uniform float ao_step;
+uniform float irradiance_step;  // of E/pi
+uniform int last_bounce;
+uniform vec3 albedo;
+uniform vec3 shown;             // albedo for colour, 1 for light
+uniform float gain;
+uniform float range;            // largest difference shown
+out vec4 color;
+
+${model}
+
+vec3 add_bounce(vec3 sum, uint code, int bounce) {
+  return sum * albedo + (bounce <= last_bounce ? float(code) : 0.0);
+}
+
+// Begins with the layer that has the last bounce.
+vec3 traced_light(ivec2 texel) {
+  vec3 sum = vec3(0.0);
+  for (int layer = (last_bounce + 1) / 4; layer >= 0; --layer) {
+    uvec4 codes = texelFetch(planes, ivec3(texel, layer), 0);
+    int bounce = 4 * layer - 1;
+    sum = add_bounce(sum, codes.w, bounce + 3);
+    sum = add_bounce(sum, codes.z, bounce + 2);
+    sum = add_bounce(sum, codes.y, bounce + 1);
+    if (layer > 0) sum = add_bounce(sum, codes.x, bounce);
+  }
+  return sum * irradiance_step;
+}
+
+vec3 one_bounce(ivec2 texel) {
+  int plane = last_bounce + 1;
+  uint code = texelFetch(planes, ivec3(texel, plane / 4), 0)[plane % 4];
+  vec3 power = vec3(1.0);
+  for (int b = 0; b < last_bounce; ++b) power *= albedo;
+  return power * float(code) * irradiance_step;
+}
+
+vec3 encode(vec3 light) {
+  vec3 x = clamp(light * gain, 0.0, 1.0);
+  return mix(x * 12.92, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, x));
+}
+
+vec4 signed_color(vec3 difference) {
+  float x = clamp(dot(difference, vec3(0.2126, 0.7152, 0.0722)) / range, -1.0, 1.0);
+  vec3 end = x < 0.0 ? vec3(0.13, 0.40, 0.67) : vec3(0.70, 0.09, 0.17);
+  return vec4(mix(vec3(0.97), end, pow(abs(x), 0.8)), 1.0);
+}
+
+void main() {
+  ivec2 texel = ivec2(gl_FragCoord.xy);
+  float ao = float(texelFetch(planes, ivec3(texel, 0), 0).x) * ao_step;
+  ${kPanels[panel]}
+}
+`;
+}

@@ -1,0 +1,162 @@
+// `hemibake report` through the real binary; what the page does is tested in a browser
+// (tests/report/browser).
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "cli/run_hemibake.h"
+#include "core/constants.h"
+#include "io/bake_file.h"
+#include "report/html_page.h"
+
+namespace hemibake {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+
+class Report : public CliTest {
+ protected:
+  void SetUp() override {
+    if (page_template().empty()) GTEST_SKIP() << "this build has no report";
+  }
+
+  // A small bake and all that `run` makes of it.
+  void bake(const std::string& folder, const std::string& options = "") {
+    if (!std::filesystem::exists(folder_ / "map.exr")) write_map("map.exr", SyntheticKind::kBricks, 24, 20);
+    const CommandResult result = run(fmt::format("run map.exr -o {} --rays 64 {}", folder, options));
+    ASSERT_LE(result.exit_code, 1) << result.standard_error;
+  }
+
+  std::string page(const std::string& folder) const { return read_bytes(folder_ / folder / "report.html"); }
+};
+
+TEST_F(Report, SaysWhatThePageShouldShow) {
+  bake("out");
+  const json said = run_json("report out --albedo 0.9,0.5,0");
+  EXPECT_EQ(said.at("output"), "out/report.html");
+  EXPECT_EQ(said.at("bytes"), std::filesystem::file_size(folder_ / "out/report.html"));
+  EXPECT_EQ(said.at("image"), json({24, 20}));
+  const Bake bake = read_bake(folder_ / "out/bake.exr").bake;
+  ASSERT_EQ(said.at("probes").size(), 16U);
+  for (const json& probe : said.at("probes")) {
+    const size_t texel = bake.visible_fraction.index(probe.at("x"), probe.at("y"));
+    EXPECT_EQ(probe.at("ao"), bake.visible_fraction[texel]);
+    double truth = 0;
+    for (size_t b = 0; b < bake.irradiance.size(); ++b)
+      truth += std::pow(0.5, b) * bake.irradiance[b][texel] / kPi;
+    EXPECT_NEAR(probe.at("truth").at(1).get<double>(), truth, 1e-12);
+    EXPECT_NEAR(probe.at("truth").at(2).get<double>(), bake.irradiance[0][texel] / kPi, 1e-12);
+    for (const char* model : {"bounded", "published", "notes"})
+      EXPECT_EQ(probe.at("models").at(model).size(), 3U);
+  }
+  EXPECT_LE(said.at("total_error_over_pi"), 21 * 0.5 / 65535 * 1.001);
+}
+
+TEST_F(Report, IsTheSameAtAnyThreadCount) {
+  bake("out");
+  run_well("report out -o one.html --threads 1");
+  run_well("report out -o four.html --threads 4");
+  EXPECT_EQ(read_bytes(folder_ / "one.html"), read_bytes(folder_ / "four.html"));
+}
+
+// Each of these is a page that says what is missing; that it opens is tested in the browser.
+TEST_F(Report, TakesWhatIsThere) {
+  bake("bounces", "--bounces 0");
+  run_well("report bounces");
+  EXPECT_THAT(page("bounces"), Not(HasSubstr("data-name=\"irradiance.01\"")));
+
+  bake("bin", "--bins 1");
+  run_well("report bin");
+
+  bake("all");
+  for (const char* name : {"bake.exr", "curves.csv", "fit.json", "check.json"}) {
+    std::filesystem::create_directory(folder_ / "alone");
+    std::filesystem::copy(folder_ / "all" / name, folder_ / "alone" / name);
+    run_well("report alone");
+    std::filesystem::remove_all(folder_ / "alone");
+  }
+
+  std::filesystem::create_directory(folder_ / "ao");
+  run_well("bake map.exr -o ao/bake.exr --outputs ao --rays 16");
+  run_well("report ao");
+  EXPECT_THAT(page("ao"), Not(HasSubstr("data-name=\"irradiance")));
+
+  std::filesystem::create_directory(folder_ / "light");
+  run_well("bake map.exr -o light/bake.exr --outputs irradiance --rays 16");
+  run_well("report light");
+}
+
+TEST_F(Report, FindsTheSweep) {
+  bake("out");
+  std::filesystem::create_directory(folder_ / "out/sweep");
+  for (const char* name : {"0.01.csv", "1.csv", "notes.csv", "-3.csv"})
+    std::filesystem::copy(folder_ / "out/curves.csv", folder_ / "out/sweep" / name);
+  run_well("report out");
+  EXPECT_THAT(page("out"), HasSubstr("\"amplitude_m\":0.01"));
+  EXPECT_THAT(page("out"), HasSubstr("\"amplitude_m\":1.0"));
+  EXPECT_THAT(page("out"), Not(HasSubstr("\"amplitude_m\":-3")));
+}
+
+TEST_F(Report, ShowsPicturesOfTheFolderOnly) {
+  bake("out");
+  std::filesystem::create_directory(folder_ / "out/pictures");
+  std::ofstream(folder_ / "out/pictures/wall.png") << "PNG";
+  std::ofstream(folder_ / "out/secret.png") << "SECRET";
+  std::ofstream(folder_ / "out/pictures/large.png") << std::string(3000001, 'x');
+  std::ofstream(folder_ / "out/pictures/render.json")
+      << R"({"pictures": [{"name": "wall", "files": ["wall.exr", "wall.png"]}, {"files": ["../secret.png"]},
+             {"files": ["large.png"]}, {"files": ["gone.png"]}, 7]})";
+  run_well("report out");
+  EXPECT_THAT(
+      page("out"),
+      HasSubstr("\"pictures\":[{\"name\":\"large\",\"here\":false},{\"name\":\"wall\",\"here\":true}]"));
+  EXPECT_THAT(page("out"), HasSubstr("data-index=\"1\">UE5H</script>"));
+}
+
+TEST_F(Report, SmallerImage) {
+  bake("out");
+  const json said = run_json("report out --image-size 10");
+  EXPECT_EQ(said.at("stride"), 3);
+  EXPECT_EQ(said.at("image"), json({8, 7}));
+}
+
+TEST_F(Report, RefusesWhatItCannotUse) {
+  expect_refusal("report nowhere", "nowhere: is not a folder, expected one that 'hemibake run' wrote");
+  std::filesystem::create_directory(folder_ / "empty");
+  expect_refusal("report empty", HasSubstr("empty: has none of bake.exr, curves.csv, fit.json, check.json"));
+  bake("out");
+  expect_refusal("report map.exr", HasSubstr("map.exr: is not a folder"));
+  expect_refusal("report out -o page.txt", HasSubstr("page.txt: cannot write '.txt' files, expected .html"));
+  expect_refusal("report out -o nowhere/page.html", HasSubstr("nowhere/page.html: could not write"));
+  expect_refusal("report out -o /dev/full", HasSubstr("/dev/full"));
+  for (const char* albedo : {"0.5", "0.5,0.5", "0.5,0.5,1.5", "0.5,0.5,nan", "0.5,0.5,0.5,0.5", "red"})
+    expect_refusal(fmt::format("report out --albedo {}", albedo), HasSubstr("--albedo"));
+  expect_refusal("report out --image-size 0", HasSubstr("--image-size"));
+  // A disk that is full: nothing is left of the page.
+  expect_refusal("report out", HasSubstr("out/report.html: could not write"), "trap '' XFSZ; ulimit -f 64; ");
+
+  std::filesystem::resize_file(folder_ / "out/bake.exr", 3000);
+  expect_refusal("report out", HasSubstr("out/bake.exr"));
+  std::filesystem::remove(folder_ / "out/bake.exr");
+  std::ofstream(folder_ / "out/check.json") << "{\"passed\": tr";
+  expect_refusal("report out", HasSubstr("out/check.json"));
+  std::ofstream(folder_ / "out/check.json") << "{\"passed\": true}";
+  expect_refusal("report out", HasSubstr("out/check.json: has no list \"checks\", expected one"));
+  std::filesystem::remove(folder_ / "out/check.json");
+  std::ofstream(folder_ / "out/trade.json") << "[1]";
+  expect_refusal("report out", HasSubstr("out/trade.json: is not an object"));
+}
+
+TEST(ReportWithoutNode, SaysSo) {
+  if (!page_template().empty()) GTEST_SKIP() << "this build has a report";
+  const CommandResult result = run_hemibake("report .");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(result.standard_error,
+            "hemibake: report: this build has no report, expected one made with Node and npm\n");
+}
+
+}  // namespace
+}  // namespace hemibake
