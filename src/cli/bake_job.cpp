@@ -27,6 +27,7 @@ PlanOptions plan_options(const BakeJob& job) {
   plan.patches = patches_of(job.options);
   plan.with_links = job.options.needs_links();
   plan.bounces = job.options.wants("irradiance") ? job.options.bounces : 0;
+  plan.converges = job.options.converge.has_value();
   plan.scene_bytes = tracer_bytes(job.options, job.map.surface);
   return plan;
 }

@@ -70,6 +70,8 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
   if (options.with_links) {
     const size_t patches = options.patches == Patches::kFacets ? 2 * texels : texels;
     plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 3) + 32) + patches * 36;
+    // Light and residual of the solver, and the four directions it keeps.
+    if (options.converges) plan.plane_bytes += texels * 8 + patches * 8 * (2 + 2 * 4);
   }
   return plan;
 }

@@ -31,6 +31,7 @@ struct PlanOptions {
   Patches patches = Patches::kFacets;
   bool with_links = true;
   int bounces = 20;
+  bool converges = false;
   size_t scene_bytes = 0;  // of the tracer
 };
 
