@@ -20,7 +20,8 @@ namespace hemibake {
 namespace {
 
 constexpr double kGib = 1024.0 * 1024 * 1024;
-constexpr size_t kTexelsNamed = 5;  // of those that did not converge
+constexpr uint64_t kAnotherSeed = 0x5eed;  // more than the user's
+constexpr size_t kTexelsNamed = 5;         // of those that did not converge
 
 PlanOptions plan_options(const BakeJob& job) {
   PlanOptions plan;
@@ -95,6 +96,61 @@ void record_bounces(const Bounces& bounces, Provenance& p) {
   p["texels_closed"] = bounces.texels_closed.size();
 }
 
+void record_errors(const ErrorEstimate& errors, Provenance& p) {
+  p["error_ao_rays"] = errors.ao_rays;
+  p["error_direct_rays"] = errors.direct_rays;
+  p["error_first_rays"] = errors.first_rays;
+  p["error_mean_direct_rays"] = errors.mean_direct_rays;
+  p["error_mean_first_rays"] = errors.mean_first_rays;
+  p["error_mean_first_patches"] = errors.first_patches;
+  p["error_mean_half_patches"] = errors.half_patches;
+  p["error_mean_total_bounces"] = errors.total_bounces;
+  p["error_mean_half_bounces"] = errors.half_bounces;
+  p["error_far_horizon"] = errors.far_horizon;
+  p["error_curve_direct_rays"] = errors.curve_direct;
+  p["error_curve_first_rays"] = errors.curve_first;
+}
+
+std::string describe_errors(const ErrorEstimate& e) {
+  return fmt::format(
+      "errors    of a texel (rms, rays): ao {:.2g}, E0/pi {:.2g}, E1/pi {:.2g}; of the means: E0/pi {:.1g} "
+      "rays, E1/pi {:.1g} rays + {:.1g} patches, all at albedo 0.5 {:.1g} patches + {:.1g} bounces, at 1 "
+      "{:.1g} "
+      "bounces; far horizon {:.1g}; of the curves: E0/pi {:.1g}, E1/pi {:.1g}\n",
+      e.ao_rays, e.direct_rays, e.first_rays, e.mean_direct_rays, e.mean_first_rays, e.first_patches,
+      e.half_patches, e.half_bounces, e.total_bounces, e.far_horizon, e.curve_direct, e.curve_first);
+}
+
+TargetOptions target_options(const BakeJob& job) {
+  TargetOptions target;
+  target.error = *job.options.target_error;
+  target.patches = patches_of(job.options);
+  target.with_light = job.options.needs_links() && job.options.wants("irradiance");
+  if (job.options.tracer == "embree") target.fewest_rays = 16;
+  target.seed = job.options.seed;
+  target.make_tracer = [&job](int rays, uint64_t seed) {
+    BakeOptions options = job.options;
+    options.rays = rays;
+    options.seed = seed;
+    return make_tracer(options, job.map);
+  };
+  return target;
+}
+
+void choose_rays_and_bounces(BakeJob& job) {
+  job.choice = choose_for_target(job.map.surface, target_options(job));
+  job.options.rays = job.choice->rays;
+  if (job.choice->bounces > 0) job.options.bounces = job.choice->bounces;
+}
+
+void record_reached(const BakeOptions& options, const TargetErrors& reached, Provenance& p) {
+  p["target_error"] = *options.target_error;
+  p["reached_error_ao"] = reached.ao;
+  p["reached_error_direct"] = reached.direct;
+  for (size_t a = 0; options.wants("irradiance") && a < kTradeAlbedos.size(); ++a)
+    p[fmt::format("reached_error_albedo_{:g}", kTradeAlbedos[a])] = reached.light[a];
+}
+
 std::string name_texels(const std::vector<uint32_t>& texels, int width) {
   std::string names;
   for (size_t i = 0; i < std::min(texels.size(), kTexelsNamed); ++i)
@@ -151,7 +207,8 @@ void prepare_bake(const BakeOptions& options, bool only_plan, BakeJob& job) {
   job.map = load_bake_map(options);
   // Twice: before the scene is built, which may be too large already, and with the links a pilot finds.
   if (!only_plan) refuse_beyond_memory(job, plan_planes(job.map.surface, plan_options(job)));
-  job.tracer = make_tracer(options, job.map);
+  if (options.target_error) choose_rays_and_bounces(job);
+  job.tracer = make_tracer(job.options, job.map);
   job.plan = plan_bake(job.map.surface, *job.tracer, plan_options(job));
   job.plan.spills =
       job.plan.link_bytes > 0 && static_cast<double>(job.plan.memory_bytes()) > allowed_bytes(options);
@@ -172,7 +229,7 @@ BakeResult perform_bake(const BakeJob& job) {
   result.trace_cpu_seconds = process_cpu_seconds() - cpu_start;
   record_tracing(seen, result.provenance);
   if (!seen.gather.empty()) {
-    result.link_energy = measure_link_energy(job.map.surface, seen);
+    result.link_energy = measure_link_energy(job.map.surface, job.tracer->patches(), seen);
     record_link_energy(*result.link_energy, result.provenance);
   }
 
@@ -180,6 +237,14 @@ BakeResult perform_bake(const BakeJob& job) {
   if (options.wants("irradiance")) {
     bounces = bounce_light(seen, {options.bounces, options.converge, options.max_bounces});
     record_bounces(bounces, result.provenance);
+    if (!seen.gather.empty() && bounces.irradiance.size() > 1) {
+      result.errors = estimate_errors(*job.tracer->reseeded(options.seed + kAnotherSeed), seen, bounces);
+      record_errors(*result.errors, result.provenance);
+    }
+  }
+  if (options.target_error) {
+    result.reached = measure_reached(job.map.surface, seen, options.bounces, target_options(job));
+    record_reached(options, *result.reached, result.provenance);
   }
   if (!options.links.empty())
     write_links(options.links, seen.gather, seen.patches.empty() ? nullptr : &seen.patches,
@@ -202,6 +267,13 @@ std::string describe_bake(const BakeJob& job, const BakeResult& result) {
   if (result.provenance.contains("links"))
     text += fmt::format(", {:.1f} M links", 1e-6 * result.provenance["links"].get<double>());
   text += fmt::format(", peak memory {:.2f} GiB\n", static_cast<double>(peak_memory_bytes()) / kGib);
+  if (job.choice && job.options.explain) text += explain(*job.choice, target_options(job));
+  if (result.reached)
+    text += fmt::format(
+        "reached   rms error {:.5f} of the {:g} wanted, with {} rays{}: AO {:.5f}, E0/pi {:.5f}\n",
+        result.reached->worst(), *job.options.target_error, job.options.rays,
+        job.choice->bounces > 0 ? fmt::format(" and {} bounces", job.choice->bounces) : "",
+        result.reached->ao, result.reached->direct);
   if (!bake.visible_fraction.empty())
     text += fmt::format("ao        mean {:.5f}\n", mean_of(bake.visible_fraction));
   if (!bake.irradiance.empty()) {
@@ -215,6 +287,7 @@ std::string describe_bake(const BakeJob& job, const BakeResult& result) {
         mean_of(bake.total) / kPi, result.provenance["bounces_made"].get<int>(),
         result.provenance["mean_residual"].get<double>(), result.provenance["worst_residual"].get<double>());
   }
+  if (result.errors) text += describe_errors(*result.errors);
   return text;
 }
 
@@ -234,6 +307,7 @@ nlohmann::ordered_json json_from_bake(const BakeJob& job, const BakeResult& resu
     json["mean_irradiance_over_pi"] = means;
     json["mean_total_over_pi"] = mean_of(result.bake.total) / kPi;
   }
+  if (job.choice) json["choice"] = json_from_choice(*job.choice);
   json["warnings"] = result.warnings;
   return json;
 }
@@ -241,14 +315,16 @@ nlohmann::ordered_json json_from_bake(const BakeJob& job, const BakeResult& resu
 std::string describe_plan(const BakeJob& job) {
   const BakePlan& plan = job.plan;
   const auto gib = [](size_t bytes) { return static_cast<double>(bytes) / kGib; };
-  return fmt::format(
-      "memory    {:.3f} GiB: program {:.3f}, surface and scene {:.3f}, links {:.3f}{}, planes {:.3f}\n"
-      "work      {:.1f} M rays, {:.1f} M links, {} bounces: about {:.0f} cpu-s tracing, {:.0f} cpu-s "
-      "bouncing\n",
-      gib(plan.memory_bytes()), gib(BakePlan::kProgramBytes), gib(plan.surface_bytes), gib(plan.link_bytes),
-      plan.spills ? " (in a temporary file)" : "", gib(plan.plane_bytes),
-      1e-6 * static_cast<double>(plan.rays), 1e-6 * static_cast<double>(plan.links), job.options.bounces,
-      plan.trace_cpu_seconds, plan.bounce_cpu_seconds);
+  const std::string reasons = job.choice ? explain(*job.choice, target_options(job)) : "";
+  return reasons +
+         fmt::format(
+             "memory    {:.3f} GiB: program {:.3f}, surface and scene {:.3f}, links {:.3f}{}, planes {:.3f}\n"
+             "work      {:.1f} M rays, {:.1f} M links, {} bounces: about {:.0f} cpu-s tracing, {:.0f} cpu-s "
+             "bouncing\n",
+             gib(plan.memory_bytes()), gib(BakePlan::kProgramBytes), gib(plan.surface_bytes),
+             gib(plan.link_bytes), plan.spills ? " (in a temporary file)" : "", gib(plan.plane_bytes),
+             1e-6 * static_cast<double>(plan.rays), 1e-6 * static_cast<double>(plan.links),
+             job.options.bounces, plan.trace_cpu_seconds, plan.bounce_cpu_seconds);
 }
 
 nlohmann::ordered_json json_from_plan(const BakeJob& job) {

@@ -10,8 +10,10 @@
 #include "cli/bake_surface.h"
 #include "io/provenance.h"
 #include "tracers/tracer.h"
+#include "trade/target_error.h"
 #include "transport/bake.h"
 #include "transport/energy.h"
+#include "transport/error_estimate.h"
 #include "transport/plan.h"
 
 namespace hemibake {
@@ -22,6 +24,7 @@ struct BakeJob {
   BakeMap map;
   std::unique_ptr<Tracer> tracer;
   BakePlan plan;
+  std::optional<TargetChoice> choice;  // with --target-error; `options` hold what it chose
   std::filesystem::path spill_folder;  // for links that --memory does not hold; empty: the current one
 
   BakeJob() = default;
@@ -38,6 +41,8 @@ struct BakeResult {
   Bake bake;
   Provenance provenance;
   std::optional<LinkEnergy> link_energy;
+  std::optional<ErrorEstimate> errors;  // with links and a bounce
+  std::optional<TargetErrors> reached;  // with --target-error
   // For the person at the terminal.
   uint64_t rays = 0;
   double seconds = 0, cpu_seconds = 0, trace_cpu_seconds = 0;

@@ -89,6 +89,14 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
                  "hits further along the ray count as sky, m; default: no limit")
       ->check(positive_to(1e30))
       ->group("Tracing");
+  app.add_option(
+         "--target-error", options.target_error,
+         "choose rays and bounces so that the rms errors of AO, E0/pi and E/pi (albedo 0.2 to 0.95) stay "
+         "below this; a sample of texels is traced first, and another afterwards says what was reached")
+      ->check(number_in(1e-4, 0.5))
+      ->group("Tracing");
+  app.add_flag("--explain", options.explain, "with --target-error: say how rays and bounces were chosen")
+      ->group("Tracing");
   app.add_option("--seed", options.seed, "another number, other random rotations")
       ->check(whole_number_in(0, std::numeric_limits<uint64_t>::max()))
       ->capture_default_str()
@@ -216,6 +224,19 @@ void settle_bake_options(const CLI::App& app, BakeOptions& options) {
   if (options.preset == "published") apply_published_preset(app, options);
   if (options.patches.empty()) options.patches = options.tracer == "march" ? "texels" : "facets";
 
+  if (options.target_error) {
+    if (options.tracer == "march")
+      throw InputError(
+          "--target-error: a march has errors that rays do not mend, expected --tracer embree or slice");
+    if (options.max_distance_m || options.cone_degrees < 180)
+      throw InputError(
+          "--target-error: is against the whole hemisphere, expected neither --max-distance nor --cone");
+    for (const char* chosen : {"--rays", "--bounces"})
+      if (app.get_option(chosen)->count() > 0)
+        throw InputError(std::string(chosen) + ": is chosen by --target-error, expected one of the two");
+  } else if (options.explain) {
+    throw InputError("--explain: explains --target-error, expected it too");
+  }
   if (options.tracer == "march" && options.patches == "facets")
     throw InputError("--patches: a march knows no facets, expected texels with --tracer march");
   if (options.tracer == "slice" && options.rays > kMaxAzimuths)

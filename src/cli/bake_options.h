@@ -37,6 +37,8 @@ struct BakeOptions {
   std::string patches;  // empty: what the tracer has (facets, where it has both)
   std::string texel_links = "bilinear";
   std::optional<double> max_distance_m;
+  std::optional<double> target_error;  // chooses rays and bounces
+  bool explain = false;
   // --tracer march, and what it marches over.
   double filter_radius = 0;
   double filter_tolerance = 0.2;

@@ -1,5 +1,6 @@
 #include "surface/facets.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 namespace hemibake {
@@ -30,6 +31,22 @@ std::array<glm::dvec3, 3> facet_positions_texels(const Surface& surface, uint32_
     positions[c] = {texel.x, texel.y, h / surface.texel_size_m};
   }
   return positions;
+}
+
+glm::dvec2 facet_point_texels(const Surface& surface, uint32_t facet, glm::dvec2 uv) {
+  // Corner 1 lies along x from corner 0, corner 2 along y.
+  const double sign = facet % 2 == 0 ? 1 : -1;
+  return glm::dvec2(facet_corners(surface, facet).texel[0]) + sign * uv;
+}
+
+glm::dvec2 facet_coordinates(const Surface& surface, uint32_t facet, glm::dvec2 position_texels) {
+  const FacetCorners corners = facet_corners(surface, facet);
+  const double sign = facet % 2 == 0 ? 1 : -1;
+  glm::dvec2 offset = position_texels - glm::dvec2(corners.texel[0]);
+  // To the copy whose cell has its middle nearest.
+  const glm::dvec2 size(surface.width(), surface.height());
+  if (surface.edge == Edge::kWrap) offset -= size * glm::round((offset - 0.5 * sign) / size);
+  return sign * offset;
 }
 
 glm::dvec3 facet_normal(const Surface& surface, uint32_t facet) {

@@ -26,6 +26,12 @@ FacetCorners facet_corners(const Surface& surface, uint32_t facet);
 // Corner positions in units of texels: x = i, y = j, z = height / texel size (unwrapped).
 std::array<glm::dvec3, 3> facet_positions_texels(const Surface& surface, uint32_t facet);
 
+// Barycentric coordinates (of corners 1 and 2) as a position in texels, not wrapped.
+glm::dvec2 facet_point_texels(const Surface& surface, uint32_t facet, glm::dvec2 uv);
+
+// The other way round, from a position on any copy of the map; beyond 0..1 where it is not on the facet.
+glm::dvec2 facet_coordinates(const Surface& surface, uint32_t facet, glm::dvec2 position_texels);
+
 // Unit normal, z > 0.
 glm::dvec3 facet_normal(const Surface& surface, uint32_t facet);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <span>
 #include <stdexcept>
 
 #include "core/constants.h"
@@ -26,7 +27,8 @@ constexpr int kMargin = 64;  // texels of neighbouring copies around the block
 constexpr uint32_t kNoFacet = 0xffffffff;
 
 // Hash streams, one per use.
-constexpr uint64_t kTexelRotation = 1, kFacetRotation = 2, kFacetShiftU = 3, kFacetShiftV = 4;
+constexpr uint64_t kTexelRotation = 1, kNodeRotation = 2, kNodeShiftU = 3, kNodeShiftV = 4, kTexelChoice = 5,
+                   kNodeChoice = 6, kNodeElevation = 7;
 
 enum class Fate { kSky, kHit, kCutShort };
 
@@ -40,16 +42,23 @@ struct SurfaceHit {
 class EmbreeTracer final : public Tracer {
  public:
   EmbreeTracer(const Surface& surface, const RayOptions& options);
+  EmbreeTracer(const EmbreeTracer& other, uint64_t seed);
   ~EmbreeTracer() override;
 
-  uint32_t patch_count() const override {
-    return options_.patches == Patches::kFacets ? facet_count(surface_) : surface_.texel_count();
-  }
+  const PatchSet& patches() const override { return patches_; }
   void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const override;
   void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const override;
+  std::unique_ptr<Tracer> reseeded(uint64_t seed) const override {
+    return std::make_unique<EmbreeTracer>(*this, seed);
+  }
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
 
  private:
+  // What the nodes of facets cut alike share.
+  struct NodeRays {
+    std::vector<glm::vec2> azimuths;  // unit, tangent plane, one per ray
+    std::vector<glm::dvec2> points;   // in the unit square, one per ray
+  };
   struct FloatFrame {
     glm::vec3 tangent, bitangent, normal;
     glm::vec3 world_from_tangent(const glm::vec3& v) const {
@@ -57,6 +66,8 @@ class EmbreeTracer final : public Tracer {
     }
   };
 
+  static NodeRays make_node_rays(int rays);
+  EmbreeTracer(const EmbreeTracer&) = default;
   void build_scene();
   glm::vec3 texel_start(uint32_t texel) const;
   FloatFrame texel_frame(uint32_t texel) const;
@@ -67,18 +78,18 @@ class EmbreeTracer final : public Tracer {
                      uint32_t own_facet, SurfaceHit* hit) const;
   float length_in_block(float x, float y, const glm::vec3& direction) const;
   template <class StartOf>
-  void trace_rays(const std::vector<WeightedDirection>& rays, const FloatFrame& frame,
-                  const StartOf& start_of, uint32_t own_facet, bool with_links, Row& row,
-                  TracerCounts& counts) const;
-  void add_links(const SurfaceHit& hit, double weight, std::vector<Link>& links) const;
-  void trace_facet(uint32_t facet, bool with_links, Row& row, TracerCounts& counts) const;
+  void trace_rays(std::span<const WeightedDirection> rays, const FloatFrame& frame, const StartOf& start_of,
+                  uint32_t own_facet, double choice, bool with_links, Row& row, TracerCounts& counts) const;
+  void add_links(const SurfaceHit& hit, double weight, double choice, std::vector<Link>& links) const;
+  void trace_node(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const;
   uint32_t facet_of_primitive(uint32_t primitive) const;
   glm::dvec2 hit_position_texels(const SurfaceHit& hit) const;
 
   const Surface& surface_;
   RayOptions options_;
-  std::vector<WeightedDirection> texel_directions_, facet_directions_;
-  std::vector<glm::dvec2> facet_points_;  // in the unit square, one per ray
+  PatchSet patches_;
+  std::vector<WeightedDirection> texel_directions_;
+  NodeRays coarse_rays_, fine_rays_;
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
   bool wrap_;
@@ -97,13 +108,11 @@ void ignore_embree_error(void*, RTCError, const char*) {}
 EmbreeTracer::EmbreeTracer(const Surface& surface, const RayOptions& options)
     : surface_(surface),
       options_(options),
+      patches_(make_patches(surface, options.patches)),
       texel_directions_(make_directions(options.directions, options.rays, options.cone_degrees)),
-      facet_directions_(make_directions(DirectionSet::kCosine, options.rays, 180)),
+      coarse_rays_(make_node_rays(rays_per_node(options.rays, kCoarseSubdivision))),
+      fine_rays_(make_node_rays(rays_per_node(options.rays, kFineSubdivision))),
       wrap_(surface.edge == Edge::kWrap) {
-  facet_points_.reserve(static_cast<size_t>(options.rays));
-  for (uint32_t i = 0; i < static_cast<uint32_t>(options.rays); ++i)
-    facet_points_.emplace_back(radical_inverse(3, i), radical_inverse(5, i));
-
   const double range = height_range_m(surface) / surface.texel_size_m;
   top_texels_ = static_cast<float>(range);
   // A thousandth of a texel clears the rounding of the start; on a very low map the lift must not jump over
@@ -119,6 +128,22 @@ EmbreeTracer::EmbreeTracer(const Surface& surface, const RayOptions& options)
   const double smallest_block = std::min(block_width_, block_height_);
   cut_distance_texels_ = std::min(std::max(1e5 * range, 16 * smallest_block), 1e6 * smallest_block);
   build_scene();
+}
+
+EmbreeTracer::NodeRays EmbreeTracer::make_node_rays(int rays) {
+  NodeRays result;
+  for (uint32_t i = 0; i < static_cast<uint32_t>(rays); ++i) {
+    const double azimuth = 2 * kPi * radical_inverse(2, i);
+    result.azimuths.emplace_back(std::cos(azimuth), std::sin(azimuth));
+    result.points.emplace_back(radical_inverse(3, i), radical_inverse(5, i));
+  }
+  return result;
+}
+
+EmbreeTracer::EmbreeTracer(const EmbreeTracer& other, uint64_t seed) : EmbreeTracer(other) {
+  options_.seed = seed;
+  rtcRetainDevice(device_);
+  rtcRetainScene(scene_);
 }
 
 EmbreeTracer::~EmbreeTracer() {
@@ -188,10 +213,7 @@ uint32_t EmbreeTracer::facet_of_primitive(uint32_t primitive) const {
 }
 
 glm::dvec2 EmbreeTracer::hit_position_texels(const SurfaceHit& hit) const {
-  const FacetCorners corners = facet_corners(surface_, hit.facet);
-  const double sign = hit.facet % 2 == 0 ? 1 : -1;
-  // Corner 1 lies along x from corner 0, corner 2 along y.
-  return glm::dvec2(corners.texel[0]) + sign * glm::dvec2(hit.u, hit.v);
+  return facet_point_texels(surface_, hit.facet, {hit.u, hit.v});
 }
 
 // Traces one straight piece inside the scene; on a hit of the ray's own facet (rounding on a steep wall) it
@@ -302,9 +324,10 @@ EmbreeTracer::FloatFrame EmbreeTracer::texel_frame(uint32_t texel) const {
   return {frame.tangent, frame.bitangent, frame.normal};
 }
 
-void EmbreeTracer::add_links(const SurfaceHit& hit, double weight, std::vector<Link>& links) const {
+void EmbreeTracer::add_links(const SurfaceHit& hit, double weight, double choice,
+                             std::vector<Link>& links) const {
   if (options_.patches == Patches::kFacets) {
-    links.push_back({hit.facet, static_cast<float>(weight)});
+    add_node_links(patches_, hit.facet, {hit.u, hit.v}, hit.distance_texels, choice, weight, links);
   } else if (options_.texel_links == TexelLinks::kNearest) {
     add_nearest_link(surface_, hit_position_texels(hit), weight, links);
   } else {
@@ -312,11 +335,11 @@ void EmbreeTracer::add_links(const SurfaceHit& hit, double weight, std::vector<L
   }
 }
 
-// start_of(i): where ray i starts, texels, already lifted.
+// start_of(i): where ray i starts, texels, already lifted. choice: in [0, 1), which node the first hit draws.
 template <class StartOf>
-void EmbreeTracer::trace_rays(const std::vector<WeightedDirection>& rays, const FloatFrame& frame,
-                              const StartOf& start_of, uint32_t own_facet, bool with_links, Row& row,
-                              TracerCounts& counts) const {
+void EmbreeTracer::trace_rays(std::span<const WeightedDirection> rays, const FloatFrame& frame,
+                              const StartOf& start_of, uint32_t own_facet, double choice, bool with_links,
+                              Row& row, TracerCounts& counts) const {
   double visible = 0, direct = 0;
   glm::dvec3 bent(0);
   size_t hits = 0;
@@ -327,7 +350,8 @@ void EmbreeTracer::trace_rays(const std::vector<WeightedDirection>& rays, const 
     const Fate fate = follow(start_of(i), direction, own_facet, with_links ? &hit : nullptr);
     if (fate == Fate::kHit) {
       ++hits;
-      if (with_links) add_links(hit, rays[i].cosine_weight, row.links);
+      choice = shift_modulo_one(choice, kGoldenStep);
+      if (with_links) add_links(hit, rays[i].cosine_weight, choice, row.links);
     } else {
       visible += rays[i].uniform_weight;
       direct += rays[i].cosine_weight;
@@ -347,35 +371,51 @@ void EmbreeTracer::trace_rays(const std::vector<WeightedDirection>& rays, const 
 
 void EmbreeTracer::trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const {
   const glm::vec3 start = texel_start(texel);
+  const double choice = unit_interval(mix_bits(options_.seed, kTexelChoice, texel));
   trace_rays(
-      texel_directions_, texel_frame(texel), [&](size_t) { return start; }, kNoFacet, with_links, row,
+      texel_directions_, texel_frame(texel), [&](size_t) { return start; }, kNoFacet, choice, with_links, row,
       counts);
 }
 
 void EmbreeTracer::trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const {
   if (options_.patches == Patches::kTexels) return trace_texel(patch, with_links, row, counts);
-  trace_facet(patch, with_links, row, counts);
+  trace_node(patch, with_links, row, counts);
 }
 
-void EmbreeTracer::trace_facet(uint32_t facet, bool with_links, Row& row, TracerCounts& counts) const {
-  const auto corners = facet_positions_texels(surface_, facet);
-  const double leg = facet % 2 == 0 ? 1 : -1;
+void EmbreeTracer::trace_node(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const {
+  const FacetNode node = facet_node(patches_, patch);
+  const NodeRays& set = node.subdivision == kFineSubdivision ? fine_rays_ : coarse_rays_;
+  const auto random = [&](uint64_t stream) { return unit_interval(mix_bits(options_.seed, stream, patch)); };
+
+  const auto corners = facet_positions_texels(surface_, node.facet);
+  const double leg = node.facet % 2 == 0 ? 1 : -1;
   const double slope_x = leg * (corners[1].z - corners[0].z), slope_y = leg * (corners[2].z - corners[0].z);
-  const double shift_u = unit_interval(mix_bits(options_.seed, kFacetShiftU, facet));
-  const double shift_v = unit_interval(mix_bits(options_.seed, kFacetShiftV, facet));
+  const double shift_u = random(kNodeShiftU), shift_v = random(kNodeShiftV);
   const auto start_of = [&](size_t i) {
-    const glm::dvec2 uv = sample_uniform_triangle(
-        {shift_modulo_one(facet_points_[i].x, shift_u), shift_modulo_one(facet_points_[i].y, shift_v)});
+    const glm::dvec2 point = sample_uniform_triangle(
+        {shift_modulo_one(set.points[i].x, shift_u), shift_modulo_one(set.points[i].y, shift_v)});
+    const glm::dvec2 uv = node_start_uv(node.subdivision, node.node, point);
     // The height is taken at the rounded position: on a steep wall that rounding is more than the lift.
     const float x = static_cast<float>(corners[0].x + leg * uv.x),
                 y = static_cast<float>(corners[0].y + leg * uv.y);
     const double z = corners[0].z + slope_x * (x - corners[0].x) + slope_y * (y - corners[0].y);
     return glm::vec3(x, y, z + lift_texels_);
   };
-  const double turn = 2 * kPi * unit_interval(mix_bits(options_.seed, kFacetRotation, facet));
-  const Frame frame = rotated(frame_about(facet_normal(surface_, facet)), turn);
-  trace_rays(facet_directions_, {frame.tangent, frame.bitangent, frame.normal}, start_of, facet, with_links,
-             row, counts);
+
+  // Cosine-distributed, shifted in elevation too: a few rays at the same elevations everywhere would miss the
+  // same low blockers at every node.
+  thread_local std::vector<WeightedDirection> rays;  // scratch
+  rays.resize(set.azimuths.size());
+  const double count = static_cast<double>(rays.size()), shift = random(kNodeElevation);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const double sin2 = (static_cast<double>(i) + shift) / count;
+    const glm::vec2 horizontal = static_cast<float>(std::sqrt(sin2)) * set.azimuths[i];
+    rays[i] = {{horizontal.x, horizontal.y, std::sqrt(1 - sin2)}, 1 / count, 1 / count};
+  }
+  const Frame frame =
+      rotated(frame_about(facet_normal(surface_, node.facet)), 2 * kPi * random(kNodeRotation));
+  trace_rays(rays, {frame.tangent, frame.bitangent, frame.normal}, start_of, node.facet, random(kNodeChoice),
+             with_links, row, counts);
 }
 
 std::vector<RayRecord> EmbreeTracer::replay_texel(uint32_t texel) const {

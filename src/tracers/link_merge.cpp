@@ -62,6 +62,16 @@ void add_bilinear_links(const Surface& surface, glm::dvec2 position, double weig
   add_link(surface, x + 1, y + 1, weight * fx * fy, links);
 }
 
+void add_node_links(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double distance_texels,
+                    double choice, double weight, std::vector<Link>& links) {
+  if (distance_texels >= 1) {
+    links.push_back({draw_patch(patches, facet, uv, choice), static_cast<float>(weight)});
+    return;
+  }
+  for (const PatchShare& share : patch_shares(patches, facet, uv))
+    if (share.share > 0) links.push_back({share.patch, static_cast<float>(weight * share.share)});
+}
+
 void combine_links(std::vector<Link>& links) {
   sum_equal_patches(links);
   std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.patch < b.patch; });

@@ -54,10 +54,15 @@ class MarchTracer final : public Tracer {
  public:
   MarchTracer(const Surface& surface, MarchOptions options);
 
-  uint32_t patch_count() const override { return surface_.texel_count(); }
+  const PatchSet& patches() const override { return patches_; }
   void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const override;
   void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const override {
     trace_texel(patch, with_links, row, counts);
+  }
+  std::unique_ptr<Tracer> reseeded(uint64_t seed) const override {
+    auto again = std::make_unique<MarchTracer>(*this);
+    again->options_.seed = seed;
+    return again;
   }
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
 
@@ -72,7 +77,8 @@ class MarchTracer final : public Tracer {
 
   // Lengths in texels from here on; heights count from height-map value 0.
   const Surface& surface_;
-  const MarchOptions options_;
+  PatchSet patches_;
+  MarchOptions options_;
   const bool wrap_, round_weights_;
   std::vector<WeightedDirection> rays_;
   Grid<float> padded_heights_;  // one texel more on every side: texel (i, j) is at (i + 1, j + 1)
@@ -81,6 +87,7 @@ class MarchTracer final : public Tracer {
 
 MarchTracer::MarchTracer(const Surface& surface, MarchOptions options)
     : surface_(surface),
+      patches_(make_patches(surface, Patches::kTexels)),
       options_(std::move(options)),
       wrap_(surface.edge == Edge::kWrap),
       round_weights_(options_.lookup == MarchLookup::kPublished),

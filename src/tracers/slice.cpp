@@ -20,39 +20,57 @@ namespace hemibake {
 namespace {
 
 // Hash streams, one per use: apart from those of the other tracers.
-constexpr uint64_t kTexelTurn = 0x511ce01, kFacetTurn = 0x511ce02, kFacetShift = 0x511ce03,
-                   kTexelPlace = 0x511ce04, kFacetPlace = 0x511ce05;
+constexpr uint64_t kTexelTurn = 0x511ce01, kNodeTurn = 0x511ce02, kNodeShift = 0x511ce03,
+                   kTexelPlace = 0x511ce04, kNodePlace = 0x511ce05, kTexelChoice = 0x511ce06,
+                   kNodeChoice = 0x511ce07;
 
 // Paths of a family: azimuths times rotations. With fewer azimuths more rotations, so that all receivers
 // together see the whole circle; with more rotations fewer packets share a path.
-constexpr int kPaths = 512;
-// Segments kept ready in a family, about 500 bytes each.
-constexpr int kReadySegments = 16384;
+constexpr int kTexelPaths = 512, kNodePaths = 128;
+// Segments kept ready in a family, about 500 bytes each. There is one family of texels and 42 of nodes.
+constexpr int kReadyTexelSegments = 16384, kReadyNodeSegments = 1024;
 
-// Samples for links of a slice that holds the mean share of its receiver's hemisphere. Facets take fewer:
-// what a texel gathers averages over many of them.
-constexpr int kTexelStrata = kStrataPerSlice, kFacetStrata = kStrataPerSlice / 3;
+// Samples for links of a slice that holds the mean share of its receiver's hemisphere. Nodes take fewer: what
+// a texel gathers averages over many of them.
+constexpr int kTexelStrata = kStrataPerSlice, kNodeStrata = kStrataPerSlice / 3;
 
 // Packets walked together: with links, what they meet stays in the cache.
 constexpr size_t kPacketsTogether = 64, kPacketsWithLinks = 16;
 
 constexpr uint32_t kNoFacet = 0xffffffff;
 
+static_assert(kSliceLanes == kRunCells);
+
 // The receivers asked for of one packet.
 struct AskedPacket {
   SlicePacket packet;
   int first_lane, end_lane;
-  uint32_t receiver;  // of lane 0; the next lane's is `step` more
-  uint32_t step;
+  uint32_t receiver;     // of lane 0; the next lane's is one more
+  uint32_t first_facet;  // of lane 0, where the receivers are nodes; the next lane's is two more
 };
+
+// Families of nodes: by subdivision, half of the cell and node.
+size_t node_family(int k, uint32_t half, uint32_t node) {
+  const uint32_t coarser = k == kFineSubdivision ? 2 * node_count(kCoarseSubdivision) : 0;
+  return coarser + half * node_count(k) + node;
+}
+
+SlicePaths make_turned_paths(int azimuths, int paths) {
+  SlicePaths family;
+  family.azimuths = azimuths;
+  family.turns = std::max(1, paths / azimuths);
+  return family;
+}
+
+double angle_of(const SlicePaths& family, int turn, int azimuth) {
+  return 2 * kPi * (azimuth + (turn + 0.5) / family.turns) / family.azimuths;
+}
 
 class SliceTracer final : public Tracer {
  public:
   SliceTracer(const Surface& surface, const SliceOptions& options);
 
-  uint32_t patch_count() const override {
-    return options_.patches == Patches::kFacets ? facet_count(surface_) : surface_.texel_count();
-  }
+  const PatchSet& patches() const override { return patches_; }
   void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const override {
     trace_texels(texel, with_links, {&row, 1}, counts);
   }
@@ -63,64 +81,82 @@ class SliceTracer final : public Tracer {
                     TracerCounts& counts) const override;
   void trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
                      TracerCounts& counts) const override;
+  std::unique_ptr<Tracer> reseeded(uint64_t seed) const override {
+    auto again = std::make_unique<SliceTracer>(*this);
+    again->options_.seed = seed;
+    return again;
+  }
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
 
  private:
-  SlicePaths make_paths(bool of_facets, int half) const;
-  int turn_of(uint64_t stream, uint64_t place) const;
+  SlicePaths make_texel_paths() const;
+  SlicePaths make_node_paths(int k, uint32_t half, uint32_t node) const;
+  int turn_of(const SlicePaths& paths, uint64_t stream, uint64_t place) const;
   void choose_strata(int per_slice, uint64_t stream, uint64_t place, uint64_t step,
                      SlicePacket& packet) const;
   SlicePacket texel_packet(int x, int y) const;
-  SlicePacket facet_packet(int column, int row, int half) const;
+  SlicePacket node_packet(const PatchRun& run, uint32_t half, uint32_t node) const;
   std::vector<PacketView> look(const SlicePaths& paths, WalkFor what,
                                std::span<const SlicePacket> packets) const;
-  void answer(const SlicePaths& paths, bool of_facets, bool with_links, std::span<const AskedPacket> asked,
+  void answer(const SlicePaths& paths, bool of_nodes, bool with_links, std::span<const AskedPacket> asked,
               uint32_t first, std::span<Row> rows, TracerCounts& counts) const;
   void clip_to_max_distance(const SlicePaths& paths, const SlicePacket& packet, PacketView& view) const;
   void fill_row(const SlicePaths& paths, const SlicePacket& packet, const PacketView& view, size_t lane,
-                uint32_t own_facet, bool with_links, Row& row, TracerCounts& counts) const;
+                uint32_t own_facet, double choice, bool with_links, Row& row, TracerCounts& counts) const;
 
   const Surface& surface_;
   SliceOptions options_;
-  int turns_;
+  PatchSet patches_;
   double max_distance_texels_;
   SliceField field_;
   SlicePaths texel_paths_;
-  std::array<SlicePaths, 2> facet_paths_;  // by half of the cell
+  std::vector<SlicePaths> node_paths_;  // by family; empty where patches are texels
 };
 
 SliceTracer::SliceTracer(const Surface& surface, const SliceOptions& options)
     : surface_(surface),
       options_(options),
-      turns_(std::max(1, kPaths / options.azimuths)),
+      patches_(make_patches(surface, options.patches)),
       max_distance_texels_(options.max_distance_m / surface.texel_size_m),
       field_(make_slice_field(surface)),
-      texel_paths_(make_paths(false, 0)),
-      facet_paths_{make_paths(true, 0), make_paths(true, 1)} {}
+      texel_paths_(make_texel_paths()) {
+  if (options.patches != Patches::kFacets) return;
+  for (const int k : {kCoarseSubdivision, kFineSubdivision})
+    for (uint32_t half = 0; half < 2; ++half)
+      for (uint32_t node = 0; node < node_count(k); ++node)
+        node_paths_.push_back(make_node_paths(k, half, node));
+}
 
-SlicePaths SliceTracer::make_paths(bool of_facets, int half) const {
-  SlicePaths paths;
-  paths.azimuths = options_.azimuths;
-  paths.turns = turns_;
-  for (int turn = 0; turn < paths.turns; ++turn) {
-    const uint64_t place = 2 * static_cast<uint64_t>(turn);
-    const double shift_u = unit_interval(mix_bits(options_.seed, kFacetShift, place));
-    const double shift_v = unit_interval(mix_bits(options_.seed, kFacetShift, place + 1));
-    for (int azimuth = 0; azimuth < paths.azimuths; ++azimuth) {
-      const uint32_t index = static_cast<uint32_t>(azimuth);
-      const double angle = 2 * kPi * (azimuth + (turn + 0.5) / paths.turns) / paths.azimuths;
-      const glm::dvec2 uv = sample_uniform_triangle({shift_modulo_one(radical_inverse(2, index), shift_u),
-                                                     shift_modulo_one(radical_inverse(3, index), shift_v)});
-      const glm::dvec2 origin = !of_facets ? glm::dvec2(0) : half == 0 ? uv : 1.0 - uv;
-      paths.paths.push_back(make_slice_path(origin, angle, of_facets));
-    }
-  }
-  prepare_segments(field_, std::max(1, kReadySegments / static_cast<int>(paths.paths.size())), paths);
+SlicePaths SliceTracer::make_texel_paths() const {
+  SlicePaths paths = make_turned_paths(options_.azimuths, kTexelPaths);
+  for (int turn = 0; turn < paths.turns; ++turn)
+    for (int azimuth = 0; azimuth < paths.azimuths; ++azimuth)
+      paths.paths.push_back(make_slice_path({0, 0}, angle_of(paths, turn, azimuth), false));
+  prepare_segments(field_, std::max(1, kReadyTexelSegments / static_cast<int>(paths.paths.size())), paths);
   return paths;
 }
 
-int SliceTracer::turn_of(uint64_t stream, uint64_t place) const {
-  return static_cast<int>(unit_interval(mix_bits(options_.seed, stream, place)) * turns_);
+SlicePaths SliceTracer::make_node_paths(int k, uint32_t half, uint32_t node) const {
+  SlicePaths paths = make_turned_paths(azimuths_per_node(options_.azimuths, k), kNodePaths);
+  for (int turn = 0; turn < paths.turns; ++turn) {
+    const uint64_t place = 2 * static_cast<uint64_t>(turn);
+    const double shift_u = unit_interval(mix_bits(options_.seed, kNodeShift, place));
+    const double shift_v = unit_interval(mix_bits(options_.seed, kNodeShift, place + 1));
+    for (int azimuth = 0; azimuth < paths.azimuths; ++azimuth) {
+      const uint32_t index = static_cast<uint32_t>(azimuth);
+      const glm::dvec2 point =
+          sample_uniform_triangle({shift_modulo_one(radical_inverse(2, index), shift_u),
+                                   shift_modulo_one(radical_inverse(3, index), shift_v)});
+      const glm::dvec2 uv = node_start_uv(k, node, point);
+      paths.paths.push_back(make_slice_path(half == 0 ? uv : 1.0 - uv, angle_of(paths, turn, azimuth), true));
+    }
+  }
+  prepare_segments(field_, std::max(1, kReadyNodeSegments / static_cast<int>(paths.paths.size())), paths);
+  return paths;
+}
+
+int SliceTracer::turn_of(const SlicePaths& paths, uint64_t stream, uint64_t place) const {
+  return static_cast<int>(unit_interval(mix_bits(options_.seed, stream, place)) * paths.turns);
 }
 
 // The mean over the azimuths of the weight of a receiver's slice is half the secant of its tilt.
@@ -140,7 +176,7 @@ SlicePacket SliceTracer::texel_packet(int x, int y) const {
   packet.x = x;
   packet.y = y;
   packet.lanes = std::min(kSliceLanes, surface_.width() - x);
-  packet.turn = turn_of(kTexelTurn, surface_.heights_m.index(x, y));
+  packet.turn = turn_of(texel_paths_, kTexelTurn, surface_.heights_m.index(x, y));
   for (int lane = 0; lane < packet.lanes; ++lane) {
     const size_t l = static_cast<size_t>(lane);
     const glm::vec3& n = surface_.normals(x + lane, y);
@@ -152,25 +188,27 @@ SlicePacket SliceTracer::texel_packet(int x, int y) const {
   return packet;
 }
 
-SlicePacket SliceTracer::facet_packet(int column, int row, int half) const {
-  const int columns = static_cast<int>(facet_columns(surface_));
+SlicePacket SliceTracer::node_packet(const PatchRun& run, uint32_t half, uint32_t node) const {
+  const SlicePaths& paths = node_paths_[node_family(run.subdivision, half, node)];
+  const uint32_t first_patch = run.patch(half, node, 0);
+  const int corner = static_cast<int>(half);
   SlicePacket packet;
-  packet.x = column;
-  packet.y = row;
-  packet.lanes = std::min(kSliceLanes, columns - column);
-  packet.turn = turn_of(kFacetTurn, 2 * surface_.heights_m.index(column, row) + static_cast<uint64_t>(half));
-  packet.corner = static_cast<float>(half);
+  packet.x = static_cast<int>(run.first_cell % patches_.columns);
+  packet.y = static_cast<int>(run.first_cell / patches_.columns);
+  packet.lanes = static_cast<int>(run.cells);
+  packet.turn = turn_of(paths, kNodeTurn, first_patch);
+  packet.corner = static_cast<float>(corner);
   for (int lane = 0; lane < packet.lanes; ++lane) {
     const size_t l = static_cast<size_t>(lane);
-    const int x = column + lane;
-    const auto height = [&](int dx, int dy) { return *field_.heights.at(x + dx, row + dy); };
+    const auto height = [&](int dx, int dy) {
+      return *field_.heights.at(packet.x + lane + dx, packet.y + dy);
+    };
     // The legs of the right angle run along x and y, towards the cell's other side.
-    packet.base[l] = height(half, half) + static_cast<float>(options_.lift_texels);
-    packet.rim_x[l] = packet.plane_x[l] = height(1, half) - height(0, half);
-    packet.rim_y[l] = packet.plane_y[l] = height(half, 1) - height(half, 0);
+    packet.base[l] = height(corner, corner) + static_cast<float>(options_.lift_texels);
+    packet.rim_x[l] = packet.plane_x[l] = height(1, corner) - height(0, corner);
+    packet.rim_y[l] = packet.plane_y[l] = height(corner, 1) - height(corner, 0);
   }
-  choose_strata(kFacetStrata, kFacetPlace,
-                2 * surface_.heights_m.index(column, row) + static_cast<uint64_t>(half), 2, packet);
+  choose_strata(kNodeStrata, kNodePlace, first_patch, 1, packet);
   return packet;
 }
 
@@ -213,7 +251,7 @@ void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacke
 }
 
 void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, const PacketView& view,
-                           size_t lane, uint32_t own_facet, bool with_links, Row& row,
+                           size_t lane, uint32_t own_facet, double choice, bool with_links, Row& row,
                            TracerCounts& counts) const {
   const auto mean_direction = [&](const SliceSums& sums) {
     return glm::dvec3(sums.x[lane], sums.y[lane], sums.z[lane]);
@@ -229,7 +267,7 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
   const double length = glm::length(sky);
   row.bent_normal = length > 0 ? sky / length : glm::normalize(normal_over_z);
   row.links.clear();
-  counts.rays += static_cast<uint64_t>(options_.azimuths);
+  counts.rays += static_cast<uint64_t>(paths.azimuths);
   counts.cut_short += view.cut_short[lane];
   if (!with_links) return;
   for (const SliceHit& hit : view.hits[lane]) {
@@ -237,14 +275,15 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
     if (hit.facet == own_facet) continue;
     const SlicePath& path = paths.paths[paths.path_index(packet.turn, static_cast<int>(hit.azimuth))];
     const glm::dvec2 start = glm::dvec2(packet.x + static_cast<int>(lane), packet.y) + path.origin;
-    append_links(surface_, options_, hit, static_cast<double>(hit.weight) / whole, start, path.direction,
-                 row.links);
+    choice = shift_modulo_one(choice, kGoldenStep);
+    append_links(surface_, patches_, options_.texel_links, hit, static_cast<double>(hit.weight) / whole,
+                 start, path.direction, choice, row.links);
   }
   merge_links(row);
 }
 
 // Fills the rows of all receivers asked for; `first` is the receiver of rows[0].
-void SliceTracer::answer(const SlicePaths& paths, bool of_facets, bool with_links,
+void SliceTracer::answer(const SlicePaths& paths, bool of_nodes, bool with_links,
                          std::span<const AskedPacket> asked, uint32_t first, std::span<Row> rows,
                          TracerCounts& counts) const {
   const size_t together = with_links ? kPacketsWithLinks : kPacketsTogether;
@@ -255,9 +294,13 @@ void SliceTracer::answer(const SlicePaths& paths, bool of_facets, bool with_link
     const std::vector<PacketView> views = look(paths, with_links ? WalkFor::kHits : WalkFor::kSky, packets);
     for (size_t i = 0; i < piece.size(); ++i)
       for (int lane = piece[i].first_lane; lane < piece[i].end_lane; ++lane) {
-        const uint32_t receiver = piece[i].receiver + piece[i].step * static_cast<uint32_t>(lane);
-        fill_row(paths, packets[i], views[i], static_cast<size_t>(lane), of_facets ? receiver : kNoFacet,
-                 with_links, rows[receiver - first], counts);
+        const uint32_t receiver = piece[i].receiver + static_cast<uint32_t>(lane);
+        const uint32_t own_facet =
+            of_nodes ? piece[i].first_facet + 2 * static_cast<uint32_t>(lane) : kNoFacet;
+        const double choice =
+            unit_interval(mix_bits(options_.seed, of_nodes ? kNodeChoice : kTexelChoice, receiver));
+        fill_row(paths, packets[i], views[i], static_cast<size_t>(lane), own_facet, choice, with_links,
+                 rows[receiver - first], counts);
       }
   }
 }
@@ -271,7 +314,7 @@ void SliceTracer::trace_texels(uint32_t first, bool with_links, std::span<Row> r
     const int x = static_cast<int>(texel % width), lane = x % kSliceLanes;
     const SlicePacket packet = texel_packet(x - lane, static_cast<int>(texel / width));
     const int count = std::min(packet.lanes - lane, static_cast<int>(end - texel));
-    asked.push_back({packet, lane, lane + count, texel - static_cast<uint32_t>(lane), 1});
+    asked.push_back({packet, lane, lane + count, texel - static_cast<uint32_t>(lane), kNoFacet});
     texel += static_cast<uint32_t>(count);
   }
   answer(texel_paths_, false, with_links, asked, first, rows, counts);
@@ -280,20 +323,21 @@ void SliceTracer::trace_texels(uint32_t first, bool with_links, std::span<Row> r
 void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
                                 TracerCounts& counts) const {
   if (options_.patches == Patches::kTexels) return trace_texels(first, with_links, rows, counts);
-  const uint32_t columns = facet_columns(surface_), end = first + static_cast<uint32_t>(rows.size());
-  for (uint32_t half = 0; half < 2; ++half) {
-    const uint32_t first_cell = (first + 1 - half) / 2, end_cell = (end + 1 - half) / 2;
-    std::vector<AskedPacket> asked;
-    for (uint32_t cell = first_cell; cell < end_cell;) {
-      const int column = static_cast<int>(cell % columns), lane = column % kSliceLanes;
-      const SlicePacket packet =
-          facet_packet(column - lane, static_cast<int>(cell / columns), static_cast<int>(half));
-      const int count = std::min(packet.lanes - lane, static_cast<int>(end_cell - cell));
-      asked.push_back({packet, lane, lane + count, 2 * (cell - static_cast<uint32_t>(lane)) + half, 2});
-      cell += static_cast<uint32_t>(count);
-    }
-    answer(facet_paths_[half], true, with_links, asked, first, rows, counts);
+  const uint32_t end = first + static_cast<uint32_t>(rows.size());
+  std::vector<std::vector<AskedPacket>> asked(node_paths_.size());
+  for (uint32_t patch = first; patch < end;) {
+    const PatchRun run = run_of_patch(patches_, patch);
+    const uint32_t nodes = node_count(run.subdivision), in_run = patch - run.first;
+    const uint32_t half = in_run / run.cells / nodes, node = in_run / run.cells % nodes,
+                   lane = in_run % run.cells;
+    const uint32_t count = std::min(run.cells - lane, end - patch);
+    asked[node_family(run.subdivision, half, node)].push_back(
+        {node_packet(run, half, node), static_cast<int>(lane), static_cast<int>(lane + count), patch - lane,
+         2 * run.first_cell + half});
+    patch += count;
   }
+  for (size_t family = 0; family < asked.size(); ++family)
+    answer(node_paths_[family], true, with_links, asked[family], first, rows, counts);
 }
 
 // One record per stretch seen, and one per azimuth for its sky: all of what the links are a sample of.

@@ -85,14 +85,19 @@ void append_hits(const Stretch& stretch, double rim, float strata_per_weight, st
   }
 }
 
-void append_links(const Surface& surface, const SliceOptions& options, const SliceHit& hit, double weight,
-                  glm::dvec2 start, glm::dvec2 direction, std::vector<Link>& links) {
-  if (options.patches == Patches::kFacets) {
-    links.push_back({hit.facet, static_cast<float>(weight)});
+void append_links(const Surface& surface, const PatchSet& patches, TexelLinks texel_links,
+                  const SliceHit& hit, double weight, glm::dvec2 start, glm::dvec2 direction, double choice,
+                  std::vector<Link>& links) {
+  const double distance = hit_distance(surface, hit, direction);
+  const glm::dvec2 position = start + distance * direction;
+  if (patches.kind == Patches::kFacets) {
+    const double ray_length =
+        distance * std::sqrt(1 + static_cast<double>(hit.slope) * static_cast<double>(hit.slope));
+    add_node_links(patches, hit.facet, facet_coordinates(surface, hit.facet, position), ray_length, choice,
+                   weight, links);
     return;
   }
-  const glm::dvec2 position = start + hit_distance(surface, hit, direction) * direction;
-  if (options.texel_links == TexelLinks::kNearest) {
+  if (texel_links == TexelLinks::kNearest) {
     add_nearest_link(surface, position, weight, links);
   } else {
     add_bilinear_links(surface, position, weight, links);

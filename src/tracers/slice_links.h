@@ -28,7 +28,9 @@ Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 
 void append_hits(const Stretch& stretch, double rim, float strata_per_weight, std::vector<SliceHit>& hits);
 
 // Appends the links of a hit worth `weight`. `start` is the receiver's place in texels.
-void append_links(const Surface& surface, const SliceOptions& options, const SliceHit& hit, double weight,
-                  glm::dvec2 start, glm::dvec2 direction, std::vector<Link>& links);
+// choice: in [0, 1), which node of a facet is drawn.
+void append_links(const Surface& surface, const PatchSet& patches, TexelLinks texel_links,
+                  const SliceHit& hit, double weight, glm::dvec2 start, glm::dvec2 direction, double choice,
+                  std::vector<Link>& links);
 
 }  // namespace hemibake

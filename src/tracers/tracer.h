@@ -1,19 +1,20 @@
 // What a tracer answers: how much sky a receiver sees, how much light that is, and which patches block the
 // rest.
 //
-// Receivers are texels (with their shading normals) and patches; patches are what light is re-emitted by:
-// facets of the surface (surface/facets.h), or the texels themselves, with the same index as the texel.
+// Receivers are texels (with their shading normals) and patches (surface/patches.h), what light is re-emitted
+// by: nodes on the facets of the surface, or the texels themselves, with the same index as the texel.
 #pragma once
 
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <span>
 #include <vector>
 
-namespace hemibake {
+#include "surface/patches.h"
 
-enum class Patches { kFacets, kTexels };
+namespace hemibake {
 
 // E_{b+1} of the receiver gets weight · E_b of the patch.
 struct Link {
@@ -52,7 +53,7 @@ struct TracerCounts {
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  virtual uint32_t patch_count() const = 0;
+  virtual const PatchSet& patches() const = 0;
   // Fills `row`, its links only if `with_links`. Adds to `counts`.
   virtual void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const = 0;
   virtual void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const = 0;
@@ -68,6 +69,8 @@ class Tracer {
     for (size_t i = 0; i < rows.size(); ++i)
       trace_patch(first + static_cast<uint32_t>(i), with_links, rows[i], counts);
   }
+  // The same with other random rotations, on the same surface: to tell noise. Shares what is large.
+  virtual std::unique_ptr<Tracer> reseeded(uint64_t seed) const = 0;
   // Every ray trace_texel shoots for this texel, in order.
   virtual std::vector<RayRecord> replay_texel(uint32_t texel) const = 0;
 };

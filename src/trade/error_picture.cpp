@@ -20,6 +20,17 @@ glm::vec3 color_of(double error) {
   return size < 0.5f ? glm::mix(kRight, middle, 2 * size) : glm::mix(middle, end, 2 * size - 1);
 }
 
+// Small maps are shown with squares for texels, so that there is something to see.
+constexpr int kSmallestSide = 256;
+
+Grid<glm::vec3> enlarged(const Grid<glm::vec3>& picture) {
+  const int scale = std::max(1, kSmallestSide / std::max(picture.width, picture.height));
+  Grid<glm::vec3> result(scale * picture.width, scale * picture.height);
+  for (int y = 0; y < result.height; ++y)
+    for (int x = 0; x < result.width; ++x) result(x, y) = picture(x / scale, y / scale);
+  return result;
+}
+
 }  // namespace
 
 void write_error_pictures(const std::filesystem::path& folder, const std::string& id, const RunPlanes& planes,
@@ -32,7 +43,7 @@ void write_error_pictures(const std::filesystem::path& folder, const std::string
     for (size_t i = 0; i < plane.size(); ++i)
       if (planes.known.empty() || planes.known[i] != 0)
         picture[i] = color_of(static_cast<double>(plane[i]) - static_cast<double>(named.of(truth)[i]));
-    write_png8_rgb(folder / (id + "-" + named.name + ".png"), picture, provenance);
+    write_png8_rgb(folder / (id + "-" + named.name + ".png"), enlarged(picture), provenance);
   }
 }
 

@@ -152,6 +152,7 @@ void add_alchemy_runs(Effort effort, std::vector<TradeRun>& runs) {
     AlchemyOptions alchemy;
     alchemy.blur = blur;
     runs.push_back(alchemy_run(alchemy, 1));
+    runs.back().keeps_planes = true;  // with the representative one: every stage of the blur
   }
   if (!quick)
     for (const double factor : {0.25, 0.5, 2.0, 4.0}) runs.push_back(alchemy_run({}, factor));

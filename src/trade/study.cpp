@@ -71,7 +71,7 @@ ordered_json make_run(const StudyOptions& options, const TradeRun& run, const or
   Grid<float> direct = truth.cosine;
   for (float& value : direct.values) value *= static_cast<float>(kPi);
   const MeasuredRun measured = measure_run(run, surface, direct);
-  if (run.representative) {
+  if (run.representative || run.keeps_planes) {
     Provenance provenance = options.provenance;
     provenance["run"] = run.id();
     write_planes(options.folder / "planes" / (run.id() + ".exr"), measured.planes, provenance);

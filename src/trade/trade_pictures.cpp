@@ -86,7 +86,7 @@ ordered_json write_trade_pictures(const std::filesystem::path& folder, const ord
   for (const ordered_json& run : json["runs"]) {
     for (const char* plane : {"ao", "direct", "light.50"}) {
       const std::string name = fmt::format("errors/{}-{}.png", run["id"].get<std::string>(), plane);
-      if (!run["representative"].get<bool>() || !std::filesystem::exists(folder / name)) continue;
+      if (!std::filesystem::exists(folder / name)) continue;
       pictures.push_back({{"file", name},
                           {"title", fmt::format("{}: error of {}, blue -0.1 to red +0.1",
                                                 run["id"].get<std::string>(), plane)}});

@@ -49,7 +49,8 @@ struct TradeRun {
   std::string series;               // runs that differ in `abscissa` only; empty: of no series
   std::string abscissa_name;        // the setting a series varies
   double abscissa = 0;
-  bool representative = false;  // the one good setting of its method: planes are kept, models are shown
+  bool representative = false;  // the one good setting of its method
+  bool keeps_planes = false;    // written out with their error maps; those of representative runs are too
   // direct: the true E₀ (0..π), for methods that take it as given. Throws Interrupted.
   std::function<RunPlanes(const Surface& surface, const Grid<float>& direct)> perform;
 

@@ -106,7 +106,7 @@ void check_bounds(const Bake& bake, const BakeCheckOptions& options, Checks& che
 
 }  // namespace
 
-LinkEnergy measure_link_energy(const Surface& surface, const Visibility& seen) {
+LinkEnergy measure_link_energy(const Surface& surface, const PatchSet& patches, const Visibility& seen) {
   LinkEnergy energy;
   energy.row_sum_error = worst_row(seen.gather, seen.direct_over_pi.values);
   if (seen.patches.empty()) return energy;
@@ -114,15 +114,16 @@ LinkEnergy measure_link_energy(const Surface& surface, const Visibility& seen) {
   if (surface.edge != Edge::kWrap) return energy;
 
   const double rays = static_cast<double>(seen.counts.rays) / (seen.gather.rows + seen.patches.rows);
+  const double opening = 0.5 * facet_count(surface);  // texels²
   double light = 0, variance = 0;
-  for (uint32_t facet = 0; facet < seen.patches.rows; ++facet) {
-    const double area = facet_area_ratio(surface, facet);
-    const double seen_sky = static_cast<double>(seen.patch_direct_over_pi[facet]);
+  for (uint32_t patch = 0; patch < seen.patches.rows; ++patch) {
+    const double area = patch_area_texels(surface, patches, patch);
+    const double seen_sky = static_cast<double>(seen.patch_direct_over_pi[patch]);
     light += area * seen_sky;
     variance += area * area * seen_sky * (1 - seen_sky) / rays;
   }
-  energy.light_over_opening = light / seen.patches.rows;
-  energy.light_over_opening_stderr = std::sqrt(variance) / seen.patches.rows;
+  energy.light_over_opening = light / opening;
+  energy.light_over_opening_stderr = std::sqrt(variance) / opening;
   return energy;
 }
 

@@ -68,7 +68,7 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
   // under way for texels and patches.
   plan.plane_bytes = texels * 20;
   if (options.with_links) {
-    const size_t patches = options.patches == Patches::kFacets ? 2 * texels : texels;
+    const size_t patches = make_patches(surface, options.patches).count;
     plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 3) + 32) + patches * 36;
     // Light and residual of the solver, and the four directions it keeps.
     if (options.converges) plan.plane_bytes += texels * 8 + patches * 8 * (2 + 2 * 4);
@@ -81,12 +81,13 @@ BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptio
   const auto of_texels = [&](uint32_t texel, Row& row, TracerCounts& counts) {
     tracer.trace_texel(texel, options.with_links, row, counts);
   };
-  add_pilot(trace_pilot(surface.texel_count(), tracer.patch_count(), of_texels), surface.texel_count(), plan);
+  add_pilot(trace_pilot(surface.texel_count(), tracer.patches().count, of_texels), surface.texel_count(),
+            plan);
   if (options.with_links && options.patches == Patches::kFacets) {
     const auto of_patches = [&](uint32_t patch, Row& row, TracerCounts& counts) {
       tracer.trace_patch(patch, true, row, counts);
     };
-    add_pilot(trace_pilot(tracer.patch_count(), tracer.patch_count(), of_patches), tracer.patch_count(),
+    add_pilot(trace_pilot(tracer.patches().count, tracer.patches().count, of_patches), tracer.patches().count,
               plan);
   }
   if (!options.with_links) plan.link_bytes = 0;

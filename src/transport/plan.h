@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "surface/patches.h"
 #include "surface/surface.h"
 #include "tracers/tracer.h"
 

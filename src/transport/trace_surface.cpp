@@ -36,7 +36,7 @@ TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, 
         if (links != nullptr) append_row(links->blocks[b], row.links);
       }
       if (links != nullptr) finish_block(*links, b);
-      progress.advance(counts[b].rays);
+      progress.advance(block_rows.size());
     }
   });
   TracerCounts total;
@@ -58,14 +58,10 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
   const uint32_t texels = static_cast<uint32_t>(seen.visible_fraction.size());
   const bool trace_patches = with_links && patches == Patches::kFacets;
 
-  // One row tells how many rays a receiver takes.
-  Row first_row;
-  TracerCounts first_counts;
-  tracer.trace_texel(0, false, first_row, first_counts);
-  const uint64_t receivers = texels + uint64_t{trace_patches ? tracer.patch_count() : 0};
-  Progress progress("tracing", receivers * first_counts.rays, "ray");
+  const uint32_t patch_count = tracer.patches().count;
+  Progress progress("tracing", uint64_t{texels} + (trace_patches ? patch_count : 0), "receiver");
 
-  if (with_links) seen.gather = make_links(texels, tracer.patch_count(), spill);
+  if (with_links) seen.gather = make_links(texels, patch_count, spill);
   seen.counts = trace_blocks(
       texels, with_links ? &seen.gather : nullptr, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
@@ -78,10 +74,10 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
       });
   if (!trace_patches) return seen;
 
-  seen.patches = make_links(tracer.patch_count(), tracer.patch_count(), spill);
-  seen.patch_direct_over_pi.resize(tracer.patch_count());
+  seen.patches = make_links(patch_count, patch_count, spill);
+  seen.patch_direct_over_pi.resize(patch_count);
   const TracerCounts of_patches = trace_blocks(
-      tracer.patch_count(), &seen.patches, progress,
+      patch_count, &seen.patches, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_patches(first, true, rows, counts);
       },

@@ -26,7 +26,8 @@ TEST_F(Plan, SaysTheMemoryTheBakeThenTakes) {
   const nlohmann::json bake = run_json("bake map.exr -o bake.exr --rays 64");
   const double ratio = bake.at("peak_memory_bytes").get<double>() / plan.at("memory_bytes").get<double>();
   EXPECT_NEAR(ratio, 1, 0.2);
-  EXPECT_EQ(bake.at("rays_traced"), plan.at("rays"));
+  // Nodes of coarse and fine facets take a different number of rays each; the pilot knows their mix.
+  EXPECT_NEAR(bake.at("rays_traced").get<double>() / plan.at("rays").get<double>(), 1, 0.01);
   // Four standard errors of some hundred rows are a few percent.
   EXPECT_NEAR(bake.at("links").get<double>() / plan.at("links").get<double>(), 1, 0.1);
 }

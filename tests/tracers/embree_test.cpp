@@ -8,6 +8,7 @@
 #include "core/constants.h"
 #include "support/height_walk.h"
 #include "support/maps.h"
+#include "support/patch_means.h"
 #include "surface/normals.h"
 
 namespace hemibake {
@@ -102,7 +103,7 @@ TEST(EmbreeTracer, RowsSumToOne) {
         EXPECT_NEAR(row_sum(row), 1, 1e-7);
         tracer->trace_patch(i, true, row, counts);
         EXPECT_NEAR(row_sum(row), 1, 1e-7);
-        for (const Link& link : row.links) ASSERT_LT(link.patch, tracer->patch_count());
+        for (const Link& link : row.links) ASSERT_LT(link.patch, tracer->patches().count);
       }
     }
   }
@@ -114,9 +115,11 @@ TEST(EmbreeTracer, FacetsNeverSeeThemselves) {
     const auto tracer = make_embree_tracer(surface, rays(64));
     Row row;
     TracerCounts counts;
-    for (uint32_t facet = 0; facet < tracer->patch_count(); ++facet) {
-      tracer->trace_patch(facet, true, row, counts);
-      for (const Link& link : row.links) EXPECT_NE(link.patch, facet);
+    const PatchSet& patches = tracer->patches();
+    for (uint32_t patch = 0; patch < patches.count; ++patch) {
+      tracer->trace_patch(patch, true, row, counts);
+      for (const Link& link : row.links)
+        EXPECT_NE(facet_node(patches, link.patch).facet, facet_node(patches, patch).facet);
     }
   }
 }
@@ -227,14 +230,12 @@ TEST(EmbreeTracer, FacetLightAddsUpToTheOpening) {
   const auto tracer = make_embree_tracer(surface, rays(256));
   Row row;
   TracerCounts counts;
-  double light = 0, opening = 0;
-  for (uint32_t facet = 0; facet < tracer->patch_count(); ++facet) {
-    tracer->trace_patch(facet, false, row, counts);
-    light += row.direct_over_pi * facet_area_ratio(surface, facet);
-    opening += 1;
+  std::vector<double> light;
+  for (uint32_t patch = 0; patch < tracer->patches().count; ++patch) {
+    tracer->trace_patch(patch, false, row, counts);
+    light.push_back(row.direct_over_pi);
   }
-  // 8192 facets × 256 rays; the sum over facets averages the errors of each.
-  EXPECT_NEAR(light / opening, 1, 1e-3);
+  EXPECT_NEAR(sum_over_opening(surface, tracer->patches(), std::span<const double>(light)), 1, 1e-3);
 }
 
 }  // namespace

@@ -97,22 +97,43 @@ TEST(Bounces, EnergyIsPiInEveryTexel) {
   }
 }
 
-// Σ area · E_{b+1} = Σ area · E_b (1 − E₀/π) over the facets of a tiled map: what hits the surface again is
-// what did not escape (reciprocity of the links, which rays know only on average).
+// Mean over the facets' area of the product of what is linear between nodes, exactly: the rule of the middles
+// of the sides of all triangles between nodes, where the two nodes at the ends of a side share alike.
+double mean_product(const Surface& surface, const PatchSet& patches, const std::vector<double>& f,
+                    const std::vector<double>& g) {
+  double sum = 0, area_sum = 0;
+  for (uint32_t facet = 0; facet < facet_count(surface); ++facet) {
+    const int k = facet_node(patches, draw_patch(patches, facet, {0, 0}, 0)).subdivision;
+    const double area = facet_area_ratio(surface, facet);
+    area_sum += area;
+    for (int b = 0; b <= 2 * k; ++b)
+      for (int a = 0; a + b <= 2 * k; ++a) {
+        if (a % 2 == 0 && b % 2 == 0) continue;  // a node
+        const bool on_border = a == 0 || b == 0 || a + b == 2 * k;
+        const glm::dvec2 middle = glm::dvec2(a, b) / (2.0 * k);
+        const uint32_t one = draw_patch(patches, facet, middle, 0.25),
+                       other = draw_patch(patches, facet, middle, 0.75);
+        sum += area * (on_border ? 1 : 2) / (3.0 * k * k) * (f[one] + f[other]) / 2 * (g[one] + g[other]) / 2;
+      }
+  }
+  return sum / area_sum;
+}
+
+// Mean E_{b+1} = mean E_b (1 − E₀/π) over the area of a tiled map: what hits the surface again is what did
+// not escape (reciprocity, which nodes know only to the accuracy of linear light between them: up to 0.6 % a
+// bounce on this map, whose slopes turn by as much as 10° from texel to texel).
 TEST(Bounces, LightThatStaysIsLightThatComesBack) {
   const Surface surface = synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.2);
   const Visibility seen = see(surface, Patches::kFacets, 256);
+  const PatchSet patches = make_patches(surface, Patches::kFacets);
   std::vector<double> light(seen.patch_direct_over_pi.begin(), seen.patch_direct_over_pi.end()),
       next(light.size());
+  std::vector<double> ones(light.size(), 1), blocked(light.size());
+  for (size_t i = 0; i < light.size(); ++i) blocked[i] = 1 - light[i];
   for (int bounce = 0; bounce < 4; ++bounce) {
     gather(seen.patches, light, next);
-    double stays = 0, comes_back = 0;
-    for (uint32_t i = 0; i < light.size(); ++i) {
-      const double area = facet_area_ratio(surface, i);
-      stays += area * light[i] * (1 - static_cast<double>(seen.patch_direct_over_pi[i]));
-      comes_back += area * next[i];
-    }
-    EXPECT_NEAR(comes_back / stays, 1, 5e-3);
+    EXPECT_NEAR(mean_product(surface, patches, next, ones) / mean_product(surface, patches, light, blocked),
+                1, 1e-2);
     light = next;
   }
 }

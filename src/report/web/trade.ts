@@ -43,6 +43,7 @@ export function showTrade(): void {
           (value) => { plane = value; plot.draw(); })
       : '',
     plot.element,
+    h('p', { class: 'note' }, 'Each mark is a run, the large ones those of the table; lower and farther left is better. The line is the best error to be had at each cost.'),
     runs(trade, planes));
 }
 
@@ -73,8 +74,9 @@ function option(trade: Trade, plane: string): Option {
   if (front.length > 0)
     series.push(line('best at each cost', front.map((each) => [each.cpu_seconds, each.rmse]), t.ink, { step: 'end', lineStyle: { width: 1.25, color: t.ink }, z: 1, tooltip: { show: false } }));
   return {
-    legend: legend(),
-    grid: grid({ left: 70 }),
+    // Their marks; one under another where there is room, else to be leafed through.
+    legend: legend({ icon: undefined, itemHeight: 10, ...(innerWidth > 860 ? { type: 'plain' } : {}) }),
+    grid: grid({ left: 84, top: innerWidth > 860 ? 92 : 44 }),
     tooltip: tooltip({
       trigger: 'item',
       formatter: ({ data }: { data?: Spot }) => (data?.run
@@ -82,7 +84,7 @@ function option(trade: Trade, plane: string): Option {
         : ''),
     }),
     xAxis: axis('processor seconds', { type: 'log' }),
-    yAxis: axis('rms error', { type: 'log', nameGap: 52 }),
+    yAxis: axis('rms error', { type: 'log', nameGap: 60 }),
     series,
   };
 }

@@ -10,7 +10,7 @@ export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Rende
   const context = canvas.getContext('webgl2', { alpha: true, antialias: false, depth: false, preserveDrawingBuffer: true });
   if (!context) return null;
   const gl = context;
-  const layers = Math.ceil((planes.irradiance.length + 1) / 4);
+  const layers = Math.ceil((planes.irradiance.length + 1) / 8);
   if (
     layers > gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS) ||
     Math.max(planes.width, planes.height) > gl.getParameter(gl.MAX_TEXTURE_SIZE)
@@ -139,16 +139,16 @@ function uploadPlanes(gl: WebGL2RenderingContext, planes: Planes, layers: number
   gl.activeTexture(gl.TEXTURE0);
   gl.bindTexture(gl.TEXTURE_2D_ARRAY, gl.createTexture());
   gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
-  gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA16UI, width, height, layers);
+  gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA32UI, width, height, layers);
   for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
     gl.texParameteri(gl.TEXTURE_2D_ARRAY, side, gl.NEAREST);
   const all = [planes.ao, ...planes.irradiance];
-  const layer = new Uint16Array(4 * width * height);
+  const layer = new Uint32Array(4 * width * height);
   for (let l = 0; l < layers; ++l) {
     for (let part = 0; part < 4; ++part) {
-      const plane = all[4 * l + part];
-      for (let i = 0; i < width * height; ++i) layer[4 * i + part] = plane ? plane[i] : 0;
+      const low = all[8 * l + 2 * part], high = all[8 * l + 2 * part + 1];
+      for (let i = 0; i < width * height; ++i) layer[4 * i + part] = (low ? low[i] : 0) | ((high ? high[i] : 0) << 16);
     }
-    gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, l, width, height, 1, gl.RGBA_INTEGER, gl.UNSIGNED_SHORT, layer);
+    gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, l, width, height, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, layer);
   }
 }

@@ -34,7 +34,8 @@ const kPanels: Record<Panel, string> = {
   'difference off': 'color = signed_color(shown * (vec3(ao) - traced_light(texel)));',
 };
 
-// Four planes a layer: α, E₀, E₁, E₂; E₃, … Integers, so that a texel is what the bake says and nothing between two.
+// Eight planes a layer, two in each channel: α and E₀, E₁ and E₂, … Integers, so that a texel is what the bake says and
+// nothing between two.
 // A shader for each panel: software renderers work through every branch.
 export function lightShader(model: string, panel: Panel): string {
   return `#version 300 es
@@ -53,30 +54,32 @@ out vec4 color;
 
 ${model}
 
-vec3 add_bounce(vec3 sum, uint code, int bounce) {
-  return sum * albedo + (bounce <= last_bounce ? float(code) : 0.0);
+// Two bounces, the first of them in the lower half; -1 is AO.
+vec3 add_bounces(vec3 sum, uint codes, int bounce) {
+  sum = sum * albedo + (bounce < last_bounce ? float(codes >> 16) : 0.0);
+  return bounce < 0 ? sum : sum * albedo + (bounce <= last_bounce ? float(codes & 0xffffu) : 0.0);
 }
 
 // Begins with the layer that has the last bounce.
 vec3 traced_light(ivec2 texel) {
   vec3 sum = vec3(0.0);
-  for (int layer = (last_bounce + 1) / 4; layer >= 0; --layer) {
+  for (int layer = (last_bounce + 1) / 8; layer >= 0; --layer) {
     uvec4 codes = texelFetch(planes, ivec3(texel, layer), 0);
-    int bounce = 4 * layer - 1;
-    sum = add_bounce(sum, codes.w, bounce + 3);
-    sum = add_bounce(sum, codes.z, bounce + 2);
-    sum = add_bounce(sum, codes.y, bounce + 1);
-    if (layer > 0) sum = add_bounce(sum, codes.x, bounce);
+    int bounce = 8 * layer - 1;
+    sum = add_bounces(sum, codes.w, bounce + 6);
+    sum = add_bounces(sum, codes.z, bounce + 4);
+    sum = add_bounces(sum, codes.y, bounce + 2);
+    sum = add_bounces(sum, codes.x, bounce);
   }
   return sum * irradiance_step;
 }
 
 vec3 one_bounce(ivec2 texel) {
   int plane = last_bounce + 1;
-  uint code = texelFetch(planes, ivec3(texel, plane / 4), 0)[plane % 4];
+  uint codes = texelFetch(planes, ivec3(texel, plane / 8), 0)[plane / 2 % 4];
   vec3 power = vec3(1.0);
   for (int b = 0; b < last_bounce; ++b) power *= albedo;
-  return power * float(code) * irradiance_step;
+  return power * float(plane % 2 == 0 ? codes & 0xffffu : codes >> 16) * irradiance_step;
 }
 
 vec3 encode(vec3 light) {
@@ -92,7 +95,7 @@ vec4 signed_color(vec3 difference) {
 
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
-  float ao = float(texelFetch(planes, ivec3(texel, 0), 0).x) * ao_step;
+  float ao = float(texelFetch(planes, ivec3(texel, 0), 0).x & 0xffffu) * ao_step;
   ${kPanels[panel]}
 }
 `;

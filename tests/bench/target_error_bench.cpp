@@ -1,0 +1,102 @@
+// bake --target-error on five maps with held-out seeds: the error reached over every texel against that
+// wanted, and the rays chosen against the fewest that would have done.
+//
+//   hemibake_bench_target_error [SIDE [ERROR]]     32 0.005
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "support/maps.h"
+#include "tracers/embree.h"
+#include "tracers/slice.h"
+#include "trade/reference.h"
+#include "trade/scored_run.h"
+#include "trade/target_error.h"
+#include "transport/bounces.h"
+
+namespace hemibake {
+namespace {
+
+constexpr uint64_t kHeldOutSeeds[] = {101, 102, 103};
+
+struct Case {
+  const char* name;
+  SyntheticKind kind;
+  double amplitude_m;
+};
+
+// Largest rms error of α, E₀/π and E/π over the albedos, mean over the held-out seeds.
+double error_with(const Surface& surface, const TargetOptions& options, int rays, int bounces,
+                  const RunPlanes& truth) {
+  double sum = 0;
+  for (const uint64_t seed : kHeldOutSeeds) {
+    const Visibility seen = trace_surface(*options.make_tracer(rays, seed), surface.width(), surface.height(),
+                                          options.patches, true);
+    RunPlanes planes;
+    BounceOptions bounce;
+    bounce.bounces = bounces;
+    add_bounces(bounce_light(seen, bounce).irradiance, planes);
+    planes.uniform = seen.visible_fraction;
+    planes.cosine = seen.direct_over_pi;
+    const nlohmann::ordered_json errors = errors_of(planes, truth);
+    double worst = 0;
+    for (const auto& [plane, error] : errors.items())
+      if (plane != "first") worst = std::max(worst, error["rmse"].get<double>());
+    sum += worst;
+  }
+  return sum / static_cast<double>(std::size(kHeldOutSeeds));
+}
+
+// The fewest rays below `chosen` in steps of a tenth that keep the error; `chosen` where none does.
+int fewest_rays(const Surface& surface, const TargetOptions& options, const TargetChoice& choice,
+                const RunPlanes& truth) {
+  int fewest = choice.rays;
+  while (fewest > 1) {
+    const int fewer = std::min(fewest - 1, static_cast<int>(std::ceil(0.9 * fewest)));
+    if (error_with(surface, options, fewer, choice.bounces, truth) > options.error) break;
+    fewest = fewer;
+  }
+  return fewest;
+}
+
+void run(int side, double error) {
+  for (const Case& c :
+       {Case{"bricks 0.1 m", SyntheticKind::kBricks, 0.1},
+        Case{"shapes 0.45 m", SyntheticKind::kShapes, 0.45},
+        Case{"concrete 0.05 m", SyntheticKind::kConcrete, 0.05},
+        Case{"noise 0.1 m", SyntheticKind::kNoise, 0.1}, Case{"bowl 0.3 m", SyntheticKind::kBowl, 0.3}}) {
+    const Surface surface = synthetic_surface(c.kind, side, side, c.amplitude_m);
+    const RunPlanes truth = make_reference(surface, {}).planes;
+    for (const bool slices : {true, false}) {
+      TargetOptions options;
+      options.error = error;
+      options.fewest_rays = slices ? 4 : 16;
+      options.make_tracer = [&](int rays, uint64_t seed) {
+        SliceOptions by_slices;
+        by_slices.azimuths = rays;
+        by_slices.seed = seed;
+        RayOptions by_rays;
+        by_rays.rays = rays;
+        by_rays.seed = seed;
+        return slices ? make_slice_tracer(surface, by_slices) : make_embree_tracer(surface, by_rays);
+      };
+      const TargetChoice choice = choose_for_target(surface, options);
+      const double reached = error_with(surface, options, choice.rays, choice.bounces, truth);
+      const int fewest = fewest_rays(surface, options, choice, truth);
+      fmt::print("{:16} {:6}: {:4} rays, {:3} bounces, reached {:.5f} = {:.2f} x; fewest {:4}: {:.2f} x\n",
+                 c.name, slices ? "slice" : "embree", choice.rays, choice.bounces, reached, reached / error,
+                 fewest, static_cast<double>(choice.rays) / fewest);
+      std::fflush(stdout);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hemibake
+
+int main(int argc, char** argv) {
+  hemibake::run(argc > 1 ? std::atoi(argv[1]) : 32, argc > 2 ? std::atof(argv[2]) : 0.005);
+  return 0;
+}

@@ -1,0 +1,144 @@
+#include "surface/patches.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "sampling/low_discrepancy.h"
+#include "support/maps.h"
+#include "support/patch_means.h"
+
+namespace hemibake {
+namespace {
+
+// Smooth in its left half, rough in its right one; 40 cells end in a run of 8.
+Surface half_rough_surface(Edge edge) {
+  Surface surface = white_noise_surface(40, 9, 0.5, edge);
+  for (int y = 0; y < 9; ++y)
+    for (int x = 0; x < 20; ++x) surface.heights_m(x, y) = 0.25f;
+  return surface;
+}
+
+TEST(Patches, TexelsAreTheirOwn) {
+  const Surface surface = white_noise_surface(7, 5, 0.1);
+  const PatchSet patches = make_patches(surface, Patches::kTexels);
+  EXPECT_EQ(patches.count, 35u);
+  EXPECT_EQ(patch_position_texels(surface, patches, 16), glm::dvec2(2, 2));
+}
+
+TEST(Patches, EveryNodeOfEveryFacetOnceAndAlikeInARun) {
+  for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
+    const Surface surface = half_rough_surface(edge);
+    const PatchSet patches = make_patches(surface, Patches::kFacets);
+    std::map<uint32_t, uint32_t> nodes_of;  // bits
+    for (uint32_t patch = 0; patch < patches.count; ++patch) {
+      const FacetNode node = facet_node(patches, patch);
+      EXPECT_EQ(nodes_of[node.facet] >> node.node & 1, 0u);
+      nodes_of[node.facet] |= 1u << node.node;
+      EXPECT_EQ(node.subdivision, facet_node(patches, run_of_patch(patches, patch).first).subdivision);
+      // Its own light is all it draws.
+      const glm::dvec2 uv = node_uv(node.subdivision, node.node);
+      for (const double choice : {0.0, 0.5, 0.999999})
+        EXPECT_EQ(draw_patch(patches, node.facet, uv, choice), patch);
+    }
+    EXPECT_EQ(nodes_of.size(), facet_count(surface));
+    for (const auto& [facet, nodes] : nodes_of) {
+      const uint32_t column = facet / 2 % facet_columns(surface);
+      EXPECT_EQ(nodes, (1u << node_count(column < kRunCells ? kCoarseSubdivision : kFineSubdivision)) - 1)
+          << facet;
+    }
+  }
+}
+
+// Light that is linear on a facet comes back exactly in the mean over the choices, wherever it is asked for;
+// also beyond the facet's border by rounding.
+TEST(Patches, DrawsReproduceLinearLight) {
+  const Surface surface = half_rough_surface(Edge::kWrap);
+  const PatchSet patches = make_patches(surface, Patches::kFacets);
+  constexpr int kChoices = 3000;
+  for (const uint32_t facet : {0u, 1u, 35u, 60u, 61u}) {
+    for (const glm::dvec2 uv : {glm::dvec2(0.1, 0.2),
+                                {0.4, 0.35},
+                                {0.6, 0.4},
+                                {0.24, 0.26},
+                                {0, 0.7},
+                                {0.3, 0.7},
+                                {1, 0},
+                                {0, 1},
+                                {0.5, 0.5},
+                                {1 + 1e-7, -1e-7},
+                                {0.7, 0.3000001}}) {
+      glm::dvec2 mean(0);
+      for (int i = 0; i < kChoices; ++i) {
+        const FacetNode node = facet_node(patches, draw_patch(patches, facet, uv, (i + 0.5) / kChoices));
+        EXPECT_EQ(node.facet, facet);
+        mean += node_uv(node.subdivision, node.node) / static_cast<double>(kChoices);
+      }
+      // The choices are a comb of 3000 teeth; each of the three shares is off by less than one of them.
+      EXPECT_NEAR(mean.x, uv.x, 1.0 / kChoices) << facet << ' ' << uv.x << ' ' << uv.y;
+      EXPECT_NEAR(mean.y, uv.y, 1.0 / kChoices) << facet << ' ' << uv.x << ' ' << uv.y;
+    }
+  }
+}
+
+// ∫ over the unit triangle, over its area: 1, 1/3 for u and v, 1/6 for u², 1/12 for uv. Of the quadratics the
+// linear half of the rule is wrong: on triangles of side s = 1/k the mean of u² by s²/6, of uv by −s²/12.
+TEST(Patches, AreaShares) {
+  for (const int k : {kCoarseSubdivision, kFineSubdivision}) {
+    double one = 0, u = 0, v = 0, uu = 0, uv = 0;
+    for (uint32_t node = 0; node < node_count(k); ++node) {
+      const double share = node_area_share(k, node);
+      const glm::dvec2 at = node_uv(k, node);
+      EXPECT_GE(share, 0);
+      one += share;
+      u += share * at.x;
+      v += share * at.y;
+      uu += share * at.x * at.x;
+      uv += share * at.x * at.y;
+    }
+    EXPECT_NEAR(one, 1, 1e-15);
+    EXPECT_NEAR(u, 1.0 / 3, 1e-15);
+    EXPECT_NEAR(v, 1.0 / 3, 1e-15);
+    EXPECT_NEAR(uu, 1.0 / 6 + 0.5 / (6.0 * k * k), 1e-15);
+    EXPECT_NEAR(uv, 1.0 / 12 - 0.5 / (12.0 * k * k), 1e-15);
+  }
+}
+
+TEST(Patches, AreasAddUpToTheSurface) {
+  const Surface surface = half_rough_surface(Edge::kWrap);
+  const PatchSet patches = make_patches(surface, Patches::kFacets);
+  double facets = 0, nodes = 0;
+  for (uint32_t facet = 0; facet < facet_count(surface); ++facet)
+    facets += facet_area_ratio(surface, facet) / 2;
+  for (uint32_t patch = 0; patch < patches.count; ++patch)
+    nodes += patch_area_texels(surface, patches, patch);
+  EXPECT_NEAR(nodes / facets, 1, 1e-12);
+}
+
+TEST(Patches, StartsLieOnTheFacetNearTheNode) {
+  for (const int k : {kCoarseSubdivision, kFineSubdivision})
+    for (uint32_t node = 0; node < node_count(k); ++node)
+      for (const glm::dvec2 point : {glm::dvec2(0.3, 0.3), {0.01, 0.9}, {0.9, 0.05}}) {
+        const glm::dvec2 start = node_start_uv(k, node, point), at = node_uv(k, node);
+        EXPECT_TRUE(start.x > 0 && start.y > 0 && start.x + start.y < 1);
+        EXPECT_LT(std::max(std::abs(start.x - at.x), std::abs(start.y - at.y)), 0.11 / k);
+      }
+}
+
+// Position and coordinates are each other's inverse on every copy of the map.
+TEST(Patches, FacetCoordinatesFindThePointAgain) {
+  const Surface surface = white_noise_surface(6, 4, 0.3);
+  for (uint32_t facet = 0; facet < facet_count(surface); ++facet)
+    for (const glm::dvec2 uv : {glm::dvec2(0.2, 0.3), {0.98, 0.01}, {0, 0}, {0.01, 0.98}})
+      for (const glm::dvec2 copies : {glm::dvec2(0, 0), {6, 0}, {-12, 8}}) {
+        const glm::dvec2 found =
+            facet_coordinates(surface, facet, facet_point_texels(surface, facet, uv) + copies);
+        EXPECT_NEAR(found.x, uv.x, 1e-13);
+        EXPECT_NEAR(found.y, uv.y, 1e-13);
+      }
+}
+
+}  // namespace
+}  // namespace hemibake
