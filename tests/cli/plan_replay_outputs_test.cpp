@@ -35,11 +35,12 @@ TEST_F(Plan, SaysTheMemoryTheBakeThenTakes) {
 // The same planes and links where the links do not fit the memory allowed; nothing stays of them.
 TEST_F(Plan, LinksThatDoNotFitGoToAFile) {
   write_map("map.exr", SyntheticKind::kNoise, 96, 96);
-  const nlohmann::json plan = run_json("bake map.exr --rays 64 --dry-run");
+  const nlohmann::json plan = run_json("bake map.exr --rays 64 --converge 1e-4 --dry-run");
   EXPECT_FALSE(plan.at("links_spilled").get<bool>());
   const double enough = plan.at("memory_bytes").get<double>() - plan.at("link_bytes").get<double>() / 2;
   const std::string memory = fmt::format(" --memory {:.9f}", enough / (1 << 30));
-  EXPECT_TRUE(run_json("bake map.exr --rays 64 --dry-run" + memory).at("links_spilled").get<bool>());
+  EXPECT_TRUE(
+      run_json("bake map.exr --rays 64 --converge 1e-4 --dry-run" + memory).at("links_spilled").get<bool>());
   run_well("bake map.exr -o kept.exr --rays 64 --converge 1e-4 --links kept.h5");
   run_well("bake map.exr -o spilled.exr --rays 64 --converge 1e-4 --links spilled.h5" + memory);
   const Bake kept = read_bake(folder_ / "kept.exr").bake, spilled = read_bake(folder_ / "spilled.exr").bake;

@@ -67,7 +67,7 @@ int solve(const Visibility& seen, const std::vector<float>& albedo, double toler
 }
 
 TEST(LightSolver, AgreesWithEliminationAtAnyAlbedo) {
-  const Visibility seen = see(white_noise_surface(12, 10, 0.2));
+  const Visibility seen = see(white_noise_surface(7, 5, 0.2));
   const size_t patches = seen.patches.rows;
   for (const float albedo : {0.0f, 0.5f, 0.999999f, 1.0f, -1.0f}) {
     std::vector<float> albedos(patches, albedo);
@@ -83,7 +83,7 @@ TEST(LightSolver, AgreesWithEliminationAtAnyAlbedo) {
 
 // Deep pits at albedo 1, where the light is 1 everywhere in the end: neither made nor lost.
 TEST(LightSolver, TakesAFractionOfTheBounces) {
-  const Visibility seen = see(white_noise_surface(32, 32, 0.5));
+  const Visibility seen = see(white_noise_surface(20, 20, 0.5));
   const std::vector<double> direct = direct_of(seen);
   const auto furthest = [](const std::vector<double>& light) {
     double distance = 0;
@@ -112,7 +112,7 @@ TEST(LightSolver, EndsWhereNothingIsLeft) {
 }
 
 TEST(LightSolver, SameBytesAtAnyThreadCount) {
-  const Visibility seen = see(white_noise_surface(64, 64, 0.1));
+  const Visibility seen = see(white_noise_surface(48, 48, 0.1));
   std::vector<double> one, two;
   set_thread_count(1);
   solve(seen, {}, 1e-8, one);
