@@ -49,8 +49,7 @@ TracerCounts trace_blocks(uint32_t row_count, Links& links, Progress& progress, 
         store(begin + i, block_rows[i]);
         append_row(links.blocks[b], block_rows[i].links);
       }
-      links.blocks[b].patches.shrink_to_fit();
-      links.blocks[b].weights.shrink_to_fit();
+      finish_block(links, b);
       progress.advance(block_rows.size());
     }
   });
@@ -87,7 +86,8 @@ TracerCounts trace_tiles(const Tracer& tracer, uint32_t width, uint32_t height, 
 
 }  // namespace
 
-Visibility trace_surface(const Tracer& tracer, int width, int height, Patches patches, bool with_links) {
+Visibility trace_surface(const Tracer& tracer, int width, int height, Patches patches, bool with_links,
+                         const std::shared_ptr<SpillFile>& spill) {
   Visibility seen;
   seen.visible_fraction = Grid<float>(width, height);
   seen.direct_over_pi = Grid<float>(width, height);
@@ -108,7 +108,7 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
                               store_texel);
     return seen;
   }
-  seen.gather = make_links(texels, patch_count);
+  seen.gather = make_links(texels, patch_count, spill);
   seen.counts = trace_blocks(
       texels, seen.gather, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
@@ -117,7 +117,7 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
       store_texel);
   if (!trace_patches) return seen;
 
-  seen.patches = make_links(patch_count, patch_count);
+  seen.patches = make_links(patch_count, patch_count, spill);
   seen.patch_direct_over_pi.resize(patch_count);
   const TracerCounts of_patches = trace_blocks(
       patch_count, seen.patches, progress,

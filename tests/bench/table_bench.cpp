@@ -115,7 +115,7 @@ void measure(const MapKind& kind, int side, const Setting& setting, Numbers& num
   std::copy_n(seen.direct_over_pi.values.begin(), texels, planes.subspan(texels).begin());
   if (!setting.with_links) return;
   numbers.links = seen.gather.count() + seen.patches.count();
-  numbers.link_bytes = seen.gather.memory_bytes() + seen.patches.memory_bytes();
+  numbers.link_bytes = seen.gather.stored_bytes() + seen.patches.stored_bytes();
   BounceOptions options;
   options.bounces = 1;
   const Bounces bounces = bounce_light(seen, options);
