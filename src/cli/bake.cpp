@@ -34,6 +34,7 @@ int run_bake(const CLI::App& app, BakeCommandOptions& options) {
     check_bake_output(options.bake, options.bake.links, {".h5", ".hdf5"});
 
   BakeJob job;
+  job.spill_folder = std::filesystem::path(options.output).parent_path();
   prepare_bake(options.bake, !writes, job);
   if (!options.texel.empty()) {
     const Replay replay = replay_texel(job, options.texel[0], options.texel[1]);

@@ -13,6 +13,8 @@
 #include "core/statistics.h"
 #include "io/links_file.h"
 #include "transport/bounces.h"
+#include "transport/direct_light.h"
+#include "transport/spill_file.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {
@@ -27,13 +29,19 @@ PlanOptions plan_options(const BakeJob& job) {
   plan.patches = patches_of(job.options);
   plan.with_links = job.options.needs_links();
   plan.bounces = job.options.wants("irradiance") ? job.options.bounces : 0;
+  plan.converges = job.options.converge.has_value();
   plan.scene_bytes = tracer_bytes(job.options, job.map.surface);
+  if (job.options.wants("normal")) plan.kept_planes += 3;
+  if (job.options.wants("irradiance") && !plan.with_links) plan.kept_planes += 3;  // E₀, total, residual
   return plan;
 }
 
+double allowed_bytes(const BakeOptions& options) {
+  return options.memory_gib ? *options.memory_gib * kGib : static_cast<double>(machine_memory_bytes());
+}
+
 void refuse_beyond_memory(const BakeJob& job, const BakePlan& plan) {
-  const double allowed =
-      job.options.memory_gib ? *job.options.memory_gib * kGib : static_cast<double>(machine_memory_bytes());
+  const double allowed = allowed_bytes(job.options);
   if (static_cast<double>(plan.memory_bytes()) <= allowed) return;
   throw InputError(fmt::format("{}: the bake needs {:.3g} GiB, expected at most the {:.3g} GiB of {}",
                                job.options.map.string(), static_cast<double>(plan.memory_bytes()) / kGib,
@@ -205,6 +213,8 @@ void prepare_bake(const BakeOptions& options, bool only_plan, BakeJob& job) {
   if (options.target_error) choose_rays_and_bounces(job);
   job.tracer = make_tracer(job.options, job.map);
   job.plan = plan_bake(job.map.surface, *job.tracer, plan_options(job));
+  job.plan.spills =
+      job.plan.link_bytes > 0 && static_cast<double>(job.plan.memory_bytes()) > allowed_bytes(options);
   if (!only_plan) refuse_beyond_memory(job, job.plan);
 }
 
@@ -216,7 +226,8 @@ BakeResult perform_bake(const BakeJob& job) {
   result.provenance = provenance_of(options, job.map.surface);
 
   Visibility seen = trace_surface(*job.tracer, job.map.surface.width(), job.map.surface.height(),
-                                  patches_of(options), options.needs_links());
+                                  patches_of(options), options.needs_links(),
+                                  job.plan.spills ? std::make_shared<SpillFile>(job.spill_folder) : nullptr);
   result.rays = seen.counts.rays;
   result.trace_cpu_seconds = process_cpu_seconds() - cpu_start;
   record_tracing(seen, result.provenance);
@@ -227,7 +238,9 @@ BakeResult perform_bake(const BakeJob& job) {
 
   Bounces bounces;
   if (options.wants("irradiance")) {
-    bounces = bounce_light(seen, {options.bounces, options.converge, options.max_bounces});
+    bounces = options.needs_links()
+                  ? bounce_light(seen, {options.bounces, options.converge, options.max_bounces})
+                  : direct_light(seen);
     record_bounces(bounces, result.provenance);
     if (!seen.gather.empty() && bounces.irradiance.size() > 1) {
       result.errors = estimate_errors(*job.tracer->reseeded(options.seed + kAnotherSeed), seen, bounces);
@@ -310,13 +323,13 @@ std::string describe_plan(const BakeJob& job) {
   const std::string reasons = job.choice ? explain(*job.choice, target_options(job)) : "";
   return reasons +
          fmt::format(
-             "memory    {:.3f} GiB: program {:.3f}, surface and scene {:.3f}, links {:.3f}, planes {:.3f}\n"
+             "memory    {:.3f} GiB: program {:.3f}, surface and scene {:.3f}, links {:.3f}{}, planes {:.3f}\n"
              "work      {:.1f} M rays, {:.1f} M links, {} bounces: about {:.0f} cpu-s tracing, {:.0f} cpu-s "
              "bouncing\n",
              gib(plan.memory_bytes()), gib(BakePlan::kProgramBytes), gib(plan.surface_bytes),
-             gib(plan.link_bytes), gib(plan.plane_bytes), 1e-6 * static_cast<double>(plan.rays),
-             1e-6 * static_cast<double>(plan.links), job.options.bounces, plan.trace_cpu_seconds,
-             plan.bounce_cpu_seconds);
+             gib(plan.link_bytes), plan.spills ? " (in a temporary file)" : "", gib(plan.plane_bytes),
+             1e-6 * static_cast<double>(plan.rays), 1e-6 * static_cast<double>(plan.links),
+             job.options.bounces, plan.trace_cpu_seconds, plan.bounce_cpu_seconds);
 }
 
 nlohmann::ordered_json json_from_plan(const BakeJob& job) {
@@ -325,6 +338,7 @@ nlohmann::ordered_json json_from_plan(const BakeJob& job) {
           {"memory_gib", static_cast<double>(plan.memory_bytes()) / kGib},
           {"surface_bytes", plan.surface_bytes},
           {"link_bytes", plan.link_bytes},
+          {"links_spilled", plan.spills},
           {"plane_bytes", plan.plane_bytes},
           {"rays", plan.rays},
           {"links", plan.links},

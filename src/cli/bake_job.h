@@ -25,6 +25,7 @@ struct BakeJob {
   std::unique_ptr<Tracer> tracer;
   BakePlan plan;
   std::optional<TargetChoice> choice;  // with --target-error; `options` hold what it chose
+  std::filesystem::path spill_folder;  // for links that --memory does not hold; empty: the current one
 
   BakeJob() = default;
   BakeJob(const BakeJob&) = delete;
@@ -32,7 +33,8 @@ struct BakeJob {
 };
 
 // Reads the map and the normal map, builds the tracer and plans the bake. Throws InputError where the input
-// cannot be used, or where the bake needs more memory than allowed (not with `only_plan`).
+// cannot be used, or where the bake needs more memory than allowed even if its links are spilled (not with
+// `only_plan`).
 void prepare_bake(const BakeOptions& options, bool only_plan, BakeJob& job);
 
 struct BakeResult {

@@ -188,7 +188,8 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->option_text("FILE.h5")
       ->group("Output");
   app.add_option("--memory", options.memory_gib,
-                 "refuse a bake that needs more, GiB; default: what the machine has")
+                 "links that need more go to a temporary file beside the output, a bake that still does is "
+                 "refused, GiB; default: what the machine has")
       ->check(positive_to(1e6))
       ->group("Output");
 }

@@ -87,6 +87,7 @@ int run_all(const CLI::App& app, RunOptions& options) {
   if (!options.bake.links.empty()) check_bake_output(options.bake, options.bake.links, {".h5", ".hdf5"});
 
   BakeJob job;
+  job.spill_folder = options.folder;
   prepare_bake(options.bake, false, job);
   const BakeResult result = perform_bake(job);
   const BakeFile bake{result.bake, result.provenance};

@@ -106,17 +106,19 @@ std::vector<CurvePoint> curve_points(const Curves& curves, int bounce, Abscissa 
 }
 
 double total_over_pi(const CurveBin& bin, double albedo) {
-  double sum = 0, power = 1;
+  double sum = 0, power = 1, at_albedo_one = 0;
   for (const BounceStatistics& bounce : bin.bounces) {
     sum += power * bounce.mean;
+    at_albedo_one += bounce.mean;
     power *= albedo;
   }
   const size_t count = bin.bounces.size();
-  if (count >= 3 && bin.bounces[count - 1].mean < bin.bounces[count - 2].mean) {
-    const double ratio = albedo * bin.bounces[count - 1].mean / bin.bounces[count - 2].mean;
-    sum += power * bin.bounces[count - 1].mean * (bin.bounces[count - 1].mean / bin.bounces[count - 2].mean) /
-           (1 - ratio);
-  }
+  if (count < 3 || bin.bounces[count - 1].mean >= bin.bounces[count - 2].mean) return sum / kPi;
+  // Not more than the energy not yet seen, which a slow bin's last two bounces do not tell well: with ratio r
+  // what follows the last bounce E is E r/(1 − r) at albedo 1.
+  const double last = bin.bounces[count - 1].mean, left = std::max(0.0, kPi - at_albedo_one);
+  const double ratio = std::min(last / bin.bounces[count - 2].mean, left / (left + last));
+  sum += power * last * ratio / (1 - albedo * ratio);
   return sum / kPi;
 }
 

@@ -37,7 +37,8 @@ struct CurvePoint {
 std::vector<CurvePoint> curve_points(const Curves& curves, int bounce, Abscissa abscissa, Weights weights);
 
 // E/π of all bounces of one bin at albedo `albedo` (0..1): Σ ρᵇ E_b/π, the bounces after the last stored one
-// as a geometric series with the ratio of the last two.
+// as a geometric series with the ratio of the last two, or with a lower one where that would add up to more
+// than π at albedo 1.
 double total_over_pi(const CurveBin& bin, double albedo);
 
 // The points (α, ρ, total_over_pi), for each usable bin one after another for each of `albedos`. The spread

@@ -99,16 +99,6 @@ class Appender {
   hsize_t position_ = 0;
 };
 
-void check_weights(const LinkBlock& block, size_t block_index, const char* name) {
-  for (size_t row = 0; row + 1 < block.row_begin.size(); ++row)
-    for (uint32_t k = block.row_begin[row]; k < block.row_begin[row + 1]; ++k)
-      if (!std::isfinite(block.weights[k]))
-        throw std::logic_error(
-            fmt::format("internal check failed: a weight in row {} of {} is {}, expected a finite "
-                        "number",
-                        block_index * Links::kRowsPerBlock + row, name, block.weights[k]));
-}
-
 void write_matrix(hid_t file, const char* name, const Links& links) {
   Hdf5Handle group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
   const std::array<uint64_t, 2> shape{links.rows, links.columns};
@@ -119,16 +109,16 @@ void write_matrix(hid_t file, const char* name, const Links& links) {
   uint64_t position = 0;
   row_begins.append(&position, 1);
   std::vector<uint64_t> ends;
-  for (size_t b = 0; b < links.blocks.size(); ++b) {
+  BlockRows rows;
+  for (const LinkBlock& block : links.blocks) {
     throw_if_interrupted();
-    const LinkBlock& block = links.blocks[b];
-    check_weights(block, b, name);
-    ends.assign(block.row_begin.begin() + 1, block.row_begin.end());
+    unpack_block(block, rows);
+    ends.assign(rows.row_begin.begin() + 1, rows.row_begin.end());
     for (uint64_t& end : ends) end += position;
-    position += block.patches.size();
+    position += rows.patches.size();
     row_begins.append(ends.data(), ends.size());
-    indices.append(block.patches.data(), block.patches.size());
-    weights.append(block.weights.data(), block.weights.size());
+    indices.append(rows.patches.data(), rows.patches.size());
+    weights.append(rows.weights.data(), rows.weights.size());
   }
   row_begins.close();
   indices.close();
@@ -139,12 +129,7 @@ void write_matrix(hid_t file, const char* name, const Links& links) {
 void check_rows(const Links& links, const std::string& name) {
   expect_equal(links.blocks.size(), make_links(links.rows, 0).blocks.size(), "blocks of " + name);
   uint64_t rows = 0;
-  for (const LinkBlock& block : links.blocks) {
-    rows += block.row_begin.size() - 1;
-    expect_equal(block.weights.size(), block.patches.size(), "weights in a block of " + name);
-    expect_equal(size_t{block.row_begin.back()}, block.patches.size(),
-                 "end of the last row in a block of " + name);
-  }
+  for (const LinkBlock& block : links.blocks) rows += block.row_count();
   expect_equal(rows, uint64_t{links.rows}, "rows of " + name);
 }
 
@@ -214,9 +199,10 @@ std::array<uint64_t, 2> read_shape(hid_t group, const std::string& name) {
   return shape;
 }
 
-// Row ends relative to the block, from absolute ones.
-void set_row_begins(LinkBlock& block, const std::vector<uint64_t>& ends, uint64_t position,
-                    uint64_t first_row, const Links& links, uint64_t count, const std::string& name) {
+// Row begins relative to the block, from absolute ends.
+void set_row_begins(BlockRows& rows, const std::vector<uint64_t>& ends, uint64_t position, uint64_t first_row,
+                    const Links& links, uint64_t count, const std::string& name) {
+  rows.row_begin.assign(1, 0);
   uint64_t previous = position;
   for (size_t row = 0; row < ends.size(); ++row) {
     if (ends[row] < previous || ends[row] > count || ends[row] - previous > links.columns)
@@ -224,16 +210,32 @@ void set_row_begins(LinkBlock& block, const std::vector<uint64_t>& ends, uint64_
                          ends[row], count));
     previous = ends[row];
     if (previous - position > UINT32_MAX) refuse(fmt::format("{} has too many links in a row", name));
-    block.row_begin.push_back(static_cast<uint32_t>(previous - position));
+    rows.row_begin.push_back(static_cast<uint32_t>(previous - position));
   }
 }
 
-void check_block(const LinkBlock& block, const Links& links, const std::string& name) {
-  for (const uint32_t patch : block.patches)
+void check_block(const BlockRows& rows, uint64_t first_row, const Links& links, const std::string& name) {
+  for (const uint32_t patch : rows.patches)
     if (patch >= links.columns)
       refuse(fmt::format("a link of {} goes to patch {} of {}", name, patch, links.columns));
-  for (const float weight : block.weights)
-    if (!std::isfinite(weight)) refuse(fmt::format("a weight of {} is {}", name, weight));
+  for (const float weight : rows.weights)
+    if (!(std::isfinite(weight) && weight >= 0)) refuse(fmt::format("a weight of {} is {}", name, weight));
+  for (size_t row = 0; row + 1 < rows.row_begin.size(); ++row)
+    for (uint32_t k = rows.row_begin[row] + 1; k < rows.row_begin[row + 1]; ++k)
+      if (rows.patches[k] <= rows.patches[k - 1])
+        refuse(fmt::format("in row {} of {} patch {} follows patch {}", first_row + row, name,
+                           rows.patches[k], rows.patches[k - 1]));
+}
+
+void pack_rows(const BlockRows& rows, Links& links, size_t index) {
+  std::vector<Link> row;
+  for (size_t i = 0; i + 1 < rows.row_begin.size(); ++i) {
+    row.clear();
+    for (uint32_t k = rows.row_begin[i]; k < rows.row_begin[i + 1]; ++k)
+      row.push_back({rows.patches[k], rows.weights[k]});
+    append_row(links.blocks[index], row);
+  }
+  finish_block(links, index);
 }
 
 Links read_matrix(hid_t file, const std::string& name) {
@@ -247,18 +249,19 @@ Links read_matrix(hid_t file, const std::string& name) {
                        row_begins.size(), indices.size(), weights.size()));
   Links links = make_links(static_cast<uint32_t>(rows), static_cast<uint32_t>(columns));
   std::vector<uint64_t> ends;
+  BlockRows block_rows;
   row_begins.extract(ends, 1);
   uint64_t position = ends[0];
   if (position != 0) refuse(fmt::format("the first row of {} begins at link {}, not at 0", name, position));
   for (size_t b = 0; b < links.blocks.size(); ++b) {
     throw_if_interrupted();
-    LinkBlock& block = links.blocks[b];
     const uint64_t first_row = b * Links::kRowsPerBlock;
     row_begins.extract(ends, std::min<uint64_t>(Links::kRowsPerBlock, rows - first_row));
-    set_row_begins(block, ends, position, first_row, links, indices.size(), name);
-    indices.extract(block.patches, block.row_begin.back());
-    weights.extract(block.weights, block.row_begin.back());
-    check_block(block, links, name);
+    set_row_begins(block_rows, ends, position, first_row, links, indices.size(), name);
+    indices.extract(block_rows.patches, block_rows.row_begin.back());
+    weights.extract(block_rows.weights, block_rows.row_begin.back());
+    check_block(block_rows, first_row, links, name);
+    pack_rows(block_rows, links, b);
     position = ends.back();
   }
   if (position != indices.size())

@@ -26,13 +26,14 @@ struct LinksFile {
 // gather: texel × patch. patches: patch × patch; null where that is the same matrix, which is then stored
 // once under both names. direct: E₀ of every patch, 0..π. Written block by block; entries of `provenance` are
 // attributes `hemibake:NAME` of the file as in io/image_io.h, with integers of 64 bits. The same bytes at
-// every run. Throws std::logic_error where sizes do not fit or a value is not finite (naming row and matrix);
-// InputError where the file cannot be written.
+// every run. Throws std::logic_error where sizes do not fit or a value is not finite; InputError where the
+// file cannot be written.
 void write_links(const std::filesystem::path& path, const Links& gather, const Links* patches,
                  std::span<const float> direct, const Provenance& provenance);
 
-// Throws InputError naming the file where it is not a whole links file, a row begins before the one before
-// it, a column is beyond the matrix, or a value is not finite.
+// The links packed again: weights off by less than a 65535th of their row's largest, its sum kept. Throws
+// InputError naming the file where it is not a whole links file, a row begins before the one before it, its
+// columns do not ascend or are beyond the matrix, or a value is not finite or a weight below 0.
 LinksFile read_links(const std::filesystem::path& path);
 
 }  // namespace hemibake

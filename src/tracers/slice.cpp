@@ -49,6 +49,13 @@ struct AskedPacket {
   uint32_t first_facet;  // of lane 0, where the receivers are nodes; the next lane's is two more
 };
 
+// Where the row of a receiver lies, `number` receivers of the map after the first one: one after the other,
+// or of a tile.
+struct RowPlaces {
+  uint32_t map_width = 0xffffffff, tile_width = 0;
+  size_t of(uint32_t number) const { return size_t{number / map_width} * tile_width + number % map_width; }
+};
+
 // Families of nodes: by subdivision, half of the cell and node.
 size_t node_family(int k, uint32_t half, uint32_t node) {
   const uint32_t coarser = k == kFineSubdivision ? 2 * node_count(kCoarseSubdivision) : 0;
@@ -79,6 +86,8 @@ class SliceTracer final : public Tracer {
   }
   void trace_texels(uint32_t first, bool with_links, std::span<Row> rows,
                     TracerCounts& counts) const override;
+  void trace_tile(uint32_t map_width, const TexelTile& tile, std::span<Row> rows,
+                  TracerCounts& counts) const override;
   void trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
                      TracerCounts& counts) const override;
   std::unique_ptr<Tracer> reseeded(uint64_t seed) const override {
@@ -98,8 +107,9 @@ class SliceTracer final : public Tracer {
   SlicePacket node_packet(const PatchRun& run, uint32_t half, uint32_t node) const;
   std::vector<PacketView> look(const SlicePaths& paths, WalkFor what,
                                std::span<const SlicePacket> packets) const;
+  void ask_texels(uint32_t first, uint32_t count, std::vector<AskedPacket>& asked) const;
   void answer(const SlicePaths& paths, bool of_nodes, bool with_links, std::span<const AskedPacket> asked,
-              uint32_t first, std::span<Row> rows, TracerCounts& counts) const;
+              uint32_t first, RowPlaces places, std::span<Row> rows, TracerCounts& counts) const;
   void clip_to_max_distance(const SlicePaths& paths, const SlicePacket& packet, PacketView& view) const;
   void fill_row(const SlicePaths& paths, const SlicePacket& packet, const PacketView& view, size_t lane,
                 uint32_t own_facet, double choice, bool with_links, Row& row, TracerCounts& counts) const;
@@ -284,8 +294,8 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
 
 // Fills the rows of all receivers asked for; `first` is the receiver of rows[0].
 void SliceTracer::answer(const SlicePaths& paths, bool of_nodes, bool with_links,
-                         std::span<const AskedPacket> asked, uint32_t first, std::span<Row> rows,
-                         TracerCounts& counts) const {
+                         std::span<const AskedPacket> asked, uint32_t first, RowPlaces places,
+                         std::span<Row> rows, TracerCounts& counts) const {
   const size_t together = with_links ? kPacketsWithLinks : kPacketsTogether;
   for (size_t begin = 0; begin < asked.size(); begin += together) {
     const auto piece = asked.subspan(begin, std::min(together, asked.size() - begin));
@@ -300,24 +310,36 @@ void SliceTracer::answer(const SlicePaths& paths, bool of_nodes, bool with_links
         const double choice =
             unit_interval(mix_bits(options_.seed, of_nodes ? kNodeChoice : kTexelChoice, receiver));
         fill_row(paths, packets[i], views[i], static_cast<size_t>(lane), own_facet, choice, with_links,
-                 rows[receiver - first], counts);
+                 rows[places.of(receiver - first)], counts);
       }
+  }
+}
+
+// Asks for the texels first, first + 1, …
+void SliceTracer::ask_texels(uint32_t first, uint32_t count, std::vector<AskedPacket>& asked) const {
+  const uint32_t width = static_cast<uint32_t>(surface_.width()), end = first + count;
+  for (uint32_t texel = first; texel < end;) {
+    const int x = static_cast<int>(texel % width), lane = x % kSliceLanes;
+    const SlicePacket packet = texel_packet(x - lane, static_cast<int>(texel / width));
+    const int lanes = std::min(packet.lanes - lane, static_cast<int>(end - texel));
+    asked.push_back({packet, lane, lane + lanes, texel - static_cast<uint32_t>(lane), kNoFacet});
+    texel += static_cast<uint32_t>(lanes);
   }
 }
 
 void SliceTracer::trace_texels(uint32_t first, bool with_links, std::span<Row> rows,
                                TracerCounts& counts) const {
-  const uint32_t width = static_cast<uint32_t>(surface_.width()),
-                 end = first + static_cast<uint32_t>(rows.size());
   std::vector<AskedPacket> asked;
-  for (uint32_t texel = first; texel < end;) {
-    const int x = static_cast<int>(texel % width), lane = x % kSliceLanes;
-    const SlicePacket packet = texel_packet(x - lane, static_cast<int>(texel / width));
-    const int count = std::min(packet.lanes - lane, static_cast<int>(end - texel));
-    asked.push_back({packet, lane, lane + count, texel - static_cast<uint32_t>(lane), kNoFacet});
-    texel += static_cast<uint32_t>(count);
-  }
-  answer(texel_paths_, false, with_links, asked, first, rows, counts);
+  ask_texels(first, static_cast<uint32_t>(rows.size()), asked);
+  answer(texel_paths_, false, with_links, asked, first, {}, rows, counts);
+}
+
+void SliceTracer::trace_tile(uint32_t map_width, const TexelTile& tile, std::span<Row> rows,
+                             TracerCounts& counts) const {
+  const uint32_t first = tile.y * map_width + tile.x;
+  std::vector<AskedPacket> asked;
+  for (uint32_t j = 0; j < tile.height; ++j) ask_texels(first + j * map_width, tile.width, asked);
+  answer(texel_paths_, false, false, asked, first, {map_width, tile.width}, rows, counts);
 }
 
 void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
@@ -337,7 +359,7 @@ void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> 
     patch += count;
   }
   for (size_t family = 0; family < asked.size(); ++family)
-    answer(node_paths_[family], true, with_links, asked[family], first, rows, counts);
+    answer(node_paths_[family], true, with_links, asked[family], first, {}, rows, counts);
 }
 
 // One record per stretch seen, and one per azimuth for its sky: all of what the links are a sample of.

@@ -9,8 +9,10 @@ namespace {
 
 constexpr size_t kRowsPerPiece = 16;
 
-// A quarter of a window's size: windows lose little by it and fit the caches.
-constexpr int kRowShift[kSkipLevels] = {1, 3, 5};
+// A quarter of a window's size: windows lose little by it and fit the caches. The larger windows lie far from
+// a receiver, and only as one for all its packet's lanes do those of one place after another still fit.
+constexpr int kRowShift[kSkipLevels] = {1, 3, 3, 5};
+constexpr int kColumnShift[kSkipLevels] = {0, 3, 3, 5};
 
 int window_size(int level) { return kSegmentCells * kSkipSegments[level] + 2; }
 
@@ -67,20 +69,32 @@ void widen(const SliceField& field, int step, HeightPlane& plane) {
   });
 }
 
-// 2^shift rows in one.
-HeightPlane merge_rows(const HeightPlane& plane, int shift) {
+// 2^row_shift rows in one, and 2^column_shift columns with the lanes that start there.
+HeightPlane merge(const HeightPlane& plane, int row_shift, int column_shift) {
   HeightPlane merged;
-  merged.pitch = plane.pitch;
   merged.margin_left = plane.margin_left;
   merged.margin_above = plane.margin_above;
-  merged.row_shift = shift;
+  merged.row_shift = row_shift;
+  merged.column_shift = column_shift;
   const size_t pitch = plane.pitch, rows = plane.values.size() / pitch;
-  merged.values.assign(((rows - 1) >> shift) * pitch + pitch, kNoHeight);
-  for (size_t y = 0; y < rows; ++y) {
-    const float* from = plane.values.data() + y * pitch;
-    float* to = merged.values.data() + (y >> shift) * pitch;
-    for (size_t x = 0; x < pitch; ++x) to[x] = std::max(to[x], from[x]);
-  }
+  const size_t lanes = column_shift > 0 ? size_t{kSliceLanes} : 1;
+  merged.pitch = ((pitch - 1) >> column_shift) + 1;
+  const size_t merged_rows = ((rows - 1) >> row_shift) + 1;
+  merged.values.assign(merged_rows * merged.pitch, kNoHeight);
+  parallel_for(merged_rows, kRowsPerPiece, [&](size_t begin, size_t end) {
+    std::vector<float> tall(pitch);
+    for (size_t row = begin; row < end; ++row) {
+      std::fill(tall.begin(), tall.end(), kNoHeight);
+      for (size_t y = row << row_shift; y < std::min(rows, (row + 1) << row_shift); ++y)
+        for (size_t x = 0; x < pitch; ++x) tall[x] = std::max(tall[x], plane.values[y * pitch + x]);
+      for (size_t column = 0; column < merged.pitch; ++column) {
+        const size_t first = column << column_shift, last = ((column + 1) << column_shift) + lanes - 1;
+        merged.values[row * merged.pitch + column] =
+            *std::max_element(tall.begin() + static_cast<std::ptrdiff_t>(first),
+                              tall.begin() + static_cast<std::ptrdiff_t>(std::min(pitch, last)));
+      }
+    }
+  });
   return merged;
 }
 
@@ -102,7 +116,7 @@ SliceField make_slice_field(const Surface& surface) {
       widen(field, step, plane);
       size += step;
     }
-    field.tallest[level] = merge_rows(plane, kRowShift[level]);
+    field.tallest[level] = merge(plane, kRowShift[level], kColumnShift[level]);
   }
   return field;
 }

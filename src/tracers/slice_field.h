@@ -12,8 +12,10 @@ namespace hemibake {
 
 inline constexpr int kSliceLanes = 16;   // receivers of a packet, neighbours along x
 inline constexpr int kSegmentCells = 8;  // a segment of a path spans this along x or y, whichever is longer
-inline constexpr int kSkipLevels = 3;
-inline constexpr int kSkipSegments[kSkipLevels] = {1, 4, 16};  // segments that a window of each level covers
+inline constexpr int kSkipLevels = 4;
+inline constexpr int kSkipSegments[kSkipLevels] = {1, 1, 4,
+                                                   16};  // segments that a window of each level covers
+inline constexpr int kFarSegments = 8;  // from here on the second level, small but coarse, is asked first
 
 // Height of nothing: lower than every slope asks for, and differences of two of them stay finite.
 inline constexpr float kNoHeight = -1e30f;
@@ -23,11 +25,12 @@ struct HeightPlane {
   std::vector<float> values;
   size_t pitch = 0;
   int margin_left = 0, margin_above = 0;
-  int row_shift = 0;  // 2^row_shift rows of texels share a row of the plane
+  int row_shift = 0;     // 2^row_shift rows of texels share a row of the plane
+  int column_shift = 0;  // the same of columns
 
   size_t index(int x, int y) const {
     return static_cast<size_t>((y + margin_above) >> row_shift) * pitch +
-           static_cast<size_t>(x + margin_left);
+           static_cast<size_t>((x + margin_left) >> column_shift);
   }
   const float* at(int x, int y) const { return values.data() + index(x, y); }
 };
@@ -41,7 +44,8 @@ struct SliceField {
   // before it from which a window just reaches the map.
   HeightPlane heights;
   // [level] at (x, y): at least the tallest corner in x … x + s − 1 and y … y + s − 1, where
-  // s = kSegmentCells · kSkipSegments[level] + 2.
+  // s = kSegmentCells · kSkipSegments[level] + 2; of all the lanes of a packet from (x, y) on where columns
+  // are shared.
   std::array<HeightPlane, kSkipLevels> tallest;
 };
 

@@ -178,13 +178,14 @@ HWY_INLINE int PathWalk::segments_to_skip(const SlicePacket& packet, const Lanes
   const V near = hn::Set(kF, inverse_distance(segment));
   for (int level = kSkipLevels - 1; level >= 0; --level) {
     const int segments = kSkipSegments[level];
-    if (segment % segments != 0) continue;
+    if (segment % segments != 0 || (level == 1 && segment < kFarSegments)) continue;
     const glm::ivec2 corner = place(packet, window.corner[level]);
-    const float* tallest = field_.tallest[static_cast<size_t>(level)].at(corner.x, corner.y);
+    const HeightPlane& plane = field_.tallest[static_cast<size_t>(level)];
+    const float* tallest = plane.at(corner.x, corner.y);
     const V far = hn::Set(kF, inverse_distance(segment + segments));
     bool below = true;
     for (size_t p = 0; p < kParts; ++p) {
-      const V tall = hn::LoadU(kF, tallest + p * kWidth);
+      const V tall = plane.column_shift > 0 ? hn::Set(kF, *tallest) : hn::LoadU(kF, tallest + p * kWidth);
       const V rise = hn::Sub(hn::Sub(tall, lanes.base.part[p]), lanes.rise.part[p]);
       const V steepest = hn::Max(hn::Mul(rise, near), hn::Mul(rise, far));
       below = below && hn::AllTrue(kF, hn::Le(steepest, lanes.slope.part[p]));

@@ -49,6 +49,10 @@ struct TracerCounts {
       0;  // rays still below the highest texel where the tracer stops following them, taken for sky
 };
 
+struct TexelTile {
+  uint32_t x, y, width, height;
+};
+
 // A surface made ready for tracing. Safe to call from many threads; the answer depends on the receiver only.
 class Tracer {
  public:
@@ -63,6 +67,14 @@ class Tracer {
                             TracerCounts& counts) const {
     for (size_t i = 0; i < rows.size(); ++i)
       trace_texel(first + static_cast<uint32_t>(i), with_links, rows[i], counts);
+  }
+  // Rows without links of a tile of the map, `map_width` texels wide, one row of the tile after the other:
+  // the same as one by one, for tracers that answer receivers near each other faster.
+  virtual void trace_tile(uint32_t map_width, const TexelTile& tile, std::span<Row> rows,
+                          TracerCounts& counts) const {
+    for (uint32_t j = 0; j < tile.height; ++j)
+      trace_texels((tile.y + j) * map_width + tile.x, false, rows.subspan(j * tile.width, tile.width),
+                   counts);
   }
   virtual void trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
                              TracerCounts& counts) const {

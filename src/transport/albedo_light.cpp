@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "transport/light_solver.h"
 
 namespace hemibake {
 namespace {
@@ -27,11 +28,33 @@ void check_sizes(const Links& gather, const Links& patch_links, const DirectLigh
     if (!(value >= 0 && value <= 1)) fail_expectation("an albedo", static_cast<double>(value), 1);
 }
 
-// out = links · (albedo · light)
-void reflect(const Links& links, std::span<const float> albedo, const std::vector<double>& light,
-             std::vector<double>& reflected, std::vector<double>& out) {
-  for (size_t i = 0; i < light.size(); ++i) reflected[i] = static_cast<double>(albedo[i]) * light[i];
-  gather(links, reflected, out);
+// A bound of how much light a source of 1 in every patch can add up to: of the largest row sum of
+// (I − W diag(albedo))⁻¹, which has no negative entry. What no row passes on more of than `kept` adds up to
+// at most 1/(1 − kept); where that says little, the sum itself is sought until its residual is at most ½
+// everywhere: the truth is then at most twice as much.
+double largest_sum(const Links& links, std::span<const float> albedo, double kept, int max_products,
+                   int& products) {
+  constexpr double kSaysEnough = 10, kResidual = 0.5;
+  if (kept < 1 && 1 / (1 - kept) <= kSaysEnough) return 1 / (1 - kept);
+  const std::vector<double> ones(links.rows, 1.0);
+  LightSolver solver(links, albedo, std::vector<double>(links.rows), ones);
+  while (solver.largest_residual() > kResidual) {
+    if (products >= max_products || !solver.step())
+      return kept < 1 ? 1 / (1 - kept) : std::numeric_limits<double>::infinity();
+    ++products;
+  }
+  return largest(solver.light()) / kResidual;
+}
+
+// Light of the patches after `bounces` bounces; `last` is the last of them by itself.
+void bounce(const Links& links, std::span<const float> albedo, int bounces, std::vector<double>& light,
+            std::vector<double>& last) {
+  std::vector<double> next;
+  for (int b = 0; b < bounces; ++b) {
+    reflect(links, albedo, last, next);
+    last.swap(next);
+    for (size_t i = 0; i < light.size(); ++i) light[i] += last[i];
+  }
 }
 
 }  // namespace
@@ -43,36 +66,35 @@ DirectLight uniform_sky(const Visibility& seen) {
 AlbedoLight bounce_with_albedo(const Links& gather, const Links& patch_links, const DirectLight& direct,
                                std::span<const float> albedo, const AlbedoOptions& options) {
   check_sizes(gather, patch_links, direct, albedo);
-  const size_t patches = patch_links.rows;
-  std::vector<double> light(patches, 1.0), next(patches), reflected(patches);
-  // No row passes on more than `kept` of the largest light that reaches it, so that what follows a bounce of
-  // at most c is at most c kept / (1 − kept).
-  reflect(patch_links, albedo, light, reflected, next);
-  const double kept = largest(next), unit = largest(direct.patches);
-  const double followed_by = kept < 1 ? kept / (1 - kept) : std::numeric_limits<double>::infinity();
-
   AlbedoLight result;
   result.patches = direct.patches;
-  result.products = 1;
-  light = direct.patches;
-  const auto missing = [&] {
-    const double last = largest(light);
-    return last > 0 ? last * followed_by / unit : 0;
-  };
-  // Texels gather the last bounce from the patches of the one before.
-  const auto patch_bounces = options.bounces ? std::max(0, *options.bounces - 1) : options.max_products - 1;
-  for (int b = 0; b < patch_bounces; ++b) {
-    if (!options.bounces && missing() <= options.tolerance) break;
-    reflect(patch_links, albedo, light, reflected, next);
-    light.swap(next);
-    for (size_t i = 0; i < patches; ++i) result.patches[i] += light[i];
-    ++result.products;
-  }
-  result.missing = missing();
   result.texels = direct.texels;
-  if (options.bounces == 0) return result;
-  std::vector<double> gathered(result.texels.size());
-  reflect(gather, albedo, result.patches, reflected, gathered);
+  const double unit = largest(direct.patches);
+  if (options.bounces == 0 || unit == 0) return result;
+  std::vector<double> last = direct.patches;
+  if (options.bounces) {
+    // Texels gather their last bounce from the patches of the one before.
+    bounce(patch_links, albedo, *options.bounces - 1, result.patches, last);
+    result.products = *options.bounces - 1;
+  } else {
+    std::vector<double> passed_on;
+    reflect(patch_links, albedo, std::vector<double>(patch_links.rows, 1.0), passed_on);
+    reflect(patch_links, albedo, direct.patches, last);
+    result.products = 2;
+    const double sum =
+        largest_sum(patch_links, albedo, largest(passed_on), options.max_products, result.products);
+    LightSolver solver(patch_links, albedo, std::move(result.patches), std::move(last));
+    const auto missing = [&] {
+      const double residual = solver.largest_residual();
+      return residual > 0 ? residual * sum / unit : 0;
+    };
+    while (missing() > options.tolerance && result.products < options.max_products && solver.step())
+      ++result.products;
+    result.missing = missing();
+    result.patches = solver.light();
+  }
+  std::vector<double> gathered;
+  reflect(gather, albedo, result.patches, gathered);
   for (size_t i = 0; i < gathered.size(); ++i) result.texels[i] += gathered[i];
   return result;
 }

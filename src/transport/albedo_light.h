@@ -21,7 +21,7 @@ DirectLight uniform_sky(const Visibility& seen);
 
 struct AlbedoOptions {
   std::optional<int> bounces;  // of the texels' light, 0..; none: until converged
-  double tolerance = 1e-6;     // converged: no patch misses more than this, over the largest direct light
+  double tolerance = 1e-6;     // converged: no patch is further off than this, over the largest direct light
   int max_products = 2000;     // patch matrix times light; the end of it in any case, at least 1
 };
 
@@ -30,8 +30,9 @@ struct AlbedoOptions {
 struct AlbedoLight {
   std::vector<double> texels, patches;
   int products = 0;  // patch matrix times light
-  // No patch is further than this from the converged light, over the largest direct light. Infinite where a
-  // patch could keep light for ever.
+  // Only converged: no patch is further than this from the truth, either way, over the largest direct light:
+  // a bound, not an estimate, but for the rounding of the products (10⁻¹⁵ of what light can add up to).
+  // Infinite where a patch could keep light for ever.
   double missing = 0;
 };
 

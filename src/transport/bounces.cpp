@@ -2,17 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/constants.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/statistics.h"
+#include "transport/light_solver.h"
 
 namespace hemibake {
 namespace {
 
 constexpr size_t kGrain = 16384;
-constexpr int kBouncesBetweenTests = 10;  // the test gathers every texel, about half the work of a bounce
+// A test gathers every texel, about half the work of a product.
+constexpr int kBouncesBetweenTests = 10, kStepsBetweenTests = 4;
+// Largest |Σ_j w_ij + E₀(i)/π − 1| of rows that keep the energy: what is still under way is then known.
+constexpr double kKeepsEnergy = 1e-6;
 
 std::vector<double> as_double(const std::vector<float>& values) { return {values.begin(), values.end()}; }
 
@@ -52,9 +57,12 @@ struct Flow {
   }
 
   // E_0 + … + E_{b+1} of the texels, from the patches' sum to E_b.
-  std::vector<double> texel_total() const {
+  std::vector<double> texel_total() const { return gathered(sum); }
+
+  // Texels under the sky and the light of the patches.
+  std::vector<double> gathered(const std::vector<double>& patches) const {
     std::vector<double> total(texel_direct.size());
-    gather(seen.gather, sum, total);
+    gather(seen.gather, patches, total);
     add_to(total, texel_direct);
     return total;
   }
@@ -64,19 +72,81 @@ double worst_residual(const std::vector<double>& total) {
   return 1 - *std::min_element(total.begin(), total.end());
 }
 
-bool sees_only_itself(const Links& links, uint32_t row) {
-  const LinkBlock& block = links.blocks[row / Links::kRowsPerBlock];
-  const uint32_t local = row % Links::kRowsPerBlock;
-  const uint32_t begin = block.row_begin[local], end = block.row_begin[local + 1];
-  return end == begin + 1 && block.patches[begin] == row && block.weights[begin] >= 1;
+double worst_either_way(const std::vector<double>& total) {
+  double worst = 0;
+  for (const double sum : total) worst = std::max(worst, std::abs(1 - sum));
+  return worst;
+}
+
+bool keeps_energy(const Links& links, const std::vector<float>& direct) {
+  const std::vector<double> sums = row_sums(links);
+  for (size_t i = 0; i < sums.size(); ++i)
+    if (std::abs(sums[i] + static_cast<double>(direct[i]) - 1) > kKeepsEnergy) return false;
+  return true;
+}
+
+// Rows whose one link leads to themselves and loses nothing, ascending.
+std::vector<uint32_t> rows_that_see_only_themselves(const Links& links) {
+  std::vector<uint32_t> closed;
+  BlockRows rows;
+  for (size_t b = 0; b < links.blocks.size(); ++b) {
+    unpack_block(links.blocks[b], rows);
+    for (uint32_t i = 0; i + 1 < rows.row_begin.size(); ++i) {
+      const uint32_t link = rows.row_begin[i], row = static_cast<uint32_t>(b) * Links::kRowsPerBlock + i;
+      if (rows.row_begin[i + 1] == link + 1 && rows.patches[link] == row && rows.weights[link] >= 1)
+        closed.push_back(row);
+    }
+  }
+  return closed;
 }
 
 void name_short_texels(const Visibility& seen, double tolerance, Bounces& result) {
-  for (uint32_t texel = 0; texel < result.residual.size(); ++texel) {
-    if (static_cast<double>(result.residual[texel]) < tolerance) continue;
-    result.texels_short.push_back(texel);
-    if (seen.patches.empty() && sees_only_itself(seen.gather, texel)) result.texels_closed.push_back(texel);
+  for (uint32_t texel = 0; texel < result.residual.size(); ++texel)
+    if (static_cast<double>(result.residual[texel]) >= tolerance) result.texels_short.push_back(texel);
+  if (result.texels_short.empty() || !seen.patches.empty()) return;
+  std::ranges::set_intersection(rows_that_see_only_themselves(seen.gather), result.texels_short,
+                                std::back_inserter(result.texels_closed));
+}
+
+// Bounce after bounce, for rows that do not keep the energy (the march's published weights).
+void converge_by_bounces(Flow& flow, const BounceOptions& options, Bounces& result,
+                         std::vector<double>& total) {
+  Progress progress("converging", static_cast<uint64_t>(options.max_bounces), "bounce");
+  while (worst_residual(total) >= *options.converge_tolerance && result.bounces_made < options.max_bounces) {
+    const int batch = std::min(kBouncesBetweenTests, options.max_bounces - result.bounces_made);
+    // The patches are at bounce `bounces_made`; the gather adds one more.
+    for (int i = 1; i < batch; ++i) flow.bounce();
+    total = flow.texel_total();
+    flow.bounce();
+    result.bounces_made += batch;
+    progress.advance(static_cast<uint64_t>(batch));
   }
+}
+
+// The accelerated iteration, until no texel is off by the tolerance either way. Where one is still, at the
+// end of it, the bounces made one by one count, which are less than the truth for certain.
+void converge(Flow& flow, const BounceOptions& options, Bounces& result, std::vector<double>& total) {
+  const double tolerance = *options.converge_tolerance;
+  if (worst_residual(total) < tolerance || result.bounces_made >= options.max_bounces) return;
+  Progress progress("converging", static_cast<uint64_t>(options.max_bounces), "product");
+  // One bounce more is what the sum so far is short of, as the solver counts.
+  std::vector<double> more;
+  reflect(flow.seen.patch_links(), {}, flow.current, more);
+  ++result.bounces_made;
+  LightSolver solver(flow.seen.patch_links(), {}, std::move(flow.sum), std::move(more));
+  std::vector<double> solved;
+  bool goes_on = true;
+  while (goes_on) {
+    for (int i = 0; i < kStepsBetweenTests && goes_on; ++i) {
+      goes_on = result.bounces_made < options.max_bounces && solver.step();
+      result.bounces_made += goes_on;
+      progress.advance(goes_on);
+    }
+    solved = flow.gathered(solver.light());
+    goes_on = goes_on && worst_either_way(solved) >= tolerance;
+  }
+  for (size_t i = 0; i < total.size(); ++i)
+    if (std::abs(1 - solved[i]) < tolerance) total[i] = std::max(total[i], solved[i]);
 }
 
 }  // namespace
@@ -100,16 +170,11 @@ Bounces bounce_light(const Visibility& seen, const BounceOptions& options) {
   result.bounces_made = options.bounces;
 
   if (options.converge_tolerance) {
-    Progress converging("converging", static_cast<uint64_t>(options.max_bounces), "bounce");
-    while (worst_residual(total) >= *options.converge_tolerance &&
-           result.bounces_made < options.max_bounces) {
-      const int batch = std::min(kBouncesBetweenTests, options.max_bounces - result.bounces_made);
-      // After the loop above the patches are at bounce `bounces_made`; the gather adds one more.
-      for (int i = 1; i < batch; ++i) flow.bounce();
-      total = flow.texel_total();
-      flow.bounce();
-      result.bounces_made += batch;
-      converging.advance(static_cast<uint64_t>(batch));
+    if (keeps_energy(seen.gather, seen.direct_over_pi.values) &&
+        keeps_energy(seen.patch_links(), seen.patch_direct())) {
+      converge(flow, options, result, total);
+    } else {
+      converge_by_bounces(flow, options, result, total);
     }
   }
 

@@ -12,15 +12,18 @@ namespace hemibake {
 
 struct BounceOptions {
   int bounces = 20;                          // stored one by one, 0..
-  std::optional<double> converge_tolerance;  // go on until the worst texel's residual is below it
-  int max_bounces = 2000;                    // the end of that in any case
+  std::optional<double> converge_tolerance;  // go on until no texel's residual is as large, either way
+  int max_bounces = 2000;                    // the end of that in any case, and products of its iteration
 };
 
 struct Bounces {
   std::vector<Grid<float>> irradiance;  // E_0 … E_bounces, 0..π
-  Grid<float> total;                    // Σ of all bounces made, 0..π
-  Grid<float> residual;                 // (π − Σ)/π still under way
-  int bounces_made = 0;
+  Grid<float> total;                    // Σ of all bounces made, or converged, 0..π
+  // (π − Σ)/π still under way. Converged, it may be negative by less than the tolerance: the iteration comes
+  // near the sum from both sides. Texels it did not bring within the tolerance keep the sum of the bounces
+  // stored.
+  Grid<float> residual;
+  int bounces_made = 0;  // stored, and products of the patch links to converge
   double mean_residual = 0, worst_residual = 0;
   uint32_t worst_texel = 0;
   // Only with a tolerance: texels whose residual is not below it, and those among them whose every link leads

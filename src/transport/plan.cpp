@@ -8,18 +8,18 @@
 #include "core/parallel.h"
 #include "core/statistics.h"
 #include "sampling/low_discrepancy.h"
+#include "transport/links.h"
 
 namespace hemibake {
 namespace {
 
 constexpr uint32_t kPilotRows = 512;
 constexpr uint64_t kPilotStream = 100;
-constexpr size_t kBytesPerLink = 8;  // patch index and weight
 // Seconds a link takes in a bounce: measured 1–2 ns where the light under way fits the cache.
 constexpr double kSecondsPerLink = 2e-9;
 
 struct Pilot {
-  Moments links;
+  Moments links, link_bytes;  // of a row
   uint64_t rays = 0;
   double cpu_seconds = 0;
 };
@@ -27,16 +27,22 @@ struct Pilot {
 // Rows spread over [0, count), one at random in each of equal strata (a fixed step would meet the same
 // columns of the map again and again), traced on this thread.
 template <class TraceRow>
-Pilot trace_pilot(uint32_t count, const TraceRow& trace_row) {
+Pilot trace_pilot(uint32_t count, uint32_t columns, const TraceRow& trace_row) {
   Pilot pilot;
   Row row;
+  Links links = make_links(count, columns);
   TracerCounts counts;
   const uint32_t rows = std::min(count, kPilotRows);
   const double start = process_cpu_seconds();
   for (uint32_t i = 0; i < rows; ++i) {
     const double place = (i + unit_interval(mix_bits(0, kPilotStream, i))) / rows;
-    trace_row(std::min(count - 1, static_cast<uint32_t>(place * count)), row, counts);
-    pilot.links.add(static_cast<double>(row.links.size()));
+    const uint32_t receiver = std::min(count - 1, static_cast<uint32_t>(place * count));
+    trace_row(receiver, row, counts);
+    LinkBlock& block = links.blocks[receiver / Links::kRowsPerBlock];
+    const size_t bytes_before = stored_bytes(block), links_before = block.link_count();
+    append_row(block, row.links);
+    pilot.links.add(static_cast<double>(block.link_count() - links_before));
+    pilot.link_bytes.add(static_cast<double>(stored_bytes(block) - bytes_before));
   }
   pilot.cpu_seconds = process_cpu_seconds() - start;
   pilot.rays = counts.rays;
@@ -45,12 +51,10 @@ Pilot trace_pilot(uint32_t count, const TraceRow& trace_row) {
 
 void add_pilot(const Pilot& pilot, uint32_t count, BakePlan& plan) {
   const double rows = static_cast<double>(pilot.links.count), scale = count / rows;
-  // Four standard errors, and a block per thread that grows by doubling.
-  const double error = 4 * pilot.links.stddev() / std::sqrt(rows);
+  const double error = 4 * pilot.link_bytes.stddev() / std::sqrt(rows);
   plan.rays += static_cast<uint64_t>(std::llround(static_cast<double>(pilot.rays) * scale));
   plan.links += static_cast<uint64_t>(std::llround(pilot.links.mean * count));
-  plan.link_bytes +=
-      static_cast<size_t>((pilot.links.mean + error) * count) * kBytesPerLink + size_t{count} * 4;
+  plan.link_bytes += static_cast<size_t>((pilot.link_bytes.mean + error) * count);
   plan.trace_cpu_seconds += pilot.cpu_seconds * scale;
 }
 
@@ -62,10 +66,12 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
   plan.surface_bytes = texels * 16 + options.scene_bytes;
   // α, E₀/π and the bent normal; then every bounce, total and residual as planes, and four vectors of doubles
   // under way for texels and patches.
-  plan.plane_bytes = texels * 20;
+  plan.plane_bytes = texels * (20 + 4 * static_cast<size_t>(options.kept_planes));
   if (options.with_links) {
     const size_t patches = make_patches(surface, options.patches).count;
     plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 3) + 32) + patches * 36;
+    // Light and residual of the solver, and the four directions it keeps.
+    if (options.converges) plan.plane_bytes += texels * 8 + patches * 8 * (2 + 2 * 4);
   }
   return plan;
 }
@@ -75,12 +81,14 @@ BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptio
   const auto of_texels = [&](uint32_t texel, Row& row, TracerCounts& counts) {
     tracer.trace_texel(texel, options.with_links, row, counts);
   };
-  add_pilot(trace_pilot(surface.texel_count(), of_texels), surface.texel_count(), plan);
+  add_pilot(trace_pilot(surface.texel_count(), tracer.patches().count, of_texels), surface.texel_count(),
+            plan);
   if (options.with_links && options.patches == Patches::kFacets) {
     const auto of_patches = [&](uint32_t patch, Row& row, TracerCounts& counts) {
       tracer.trace_patch(patch, true, row, counts);
     };
-    add_pilot(trace_pilot(tracer.patches().count, of_patches), tracer.patches().count, plan);
+    add_pilot(trace_pilot(tracer.patches().count, tracer.patches().count, of_patches), tracer.patches().count,
+              plan);
   }
   if (!options.with_links) plan.link_bytes = 0;
   plan.bounce_cpu_seconds = static_cast<double>(plan.links) * options.bounces * kSecondsPerLink;

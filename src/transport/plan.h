@@ -21,14 +21,20 @@ struct BakePlan {
   // The program with its libraries, before it has read anything (measured; most of it OpenImageIO's).
   static constexpr size_t kProgramBytes = size_t{150} << 20;
 
-  size_t memory_bytes() const { return kProgramBytes + surface_bytes + link_bytes + plane_bytes; }
+  bool spills = false;  // links go to a file instead of memory
+
+  size_t memory_bytes() const {
+    return kProgramBytes + surface_bytes + (spills ? 0 : link_bytes) + plane_bytes;
+  }
 };
 
 struct PlanOptions {
   Patches patches = Patches::kFacets;
   bool with_links = true;
   int bounces = 20;
+  bool converges = false;
   size_t scene_bytes = 0;  // of the tracer
+  int kept_planes = 0;     // results kept beside what tracing and links take
 };
 
 // Without tracing: all but links and seconds.

@@ -13,10 +13,28 @@
 namespace hemibake {
 namespace {
 
+// Without links texels are traced in tiles of this size: what a tile's receivers meet stays in the cache.
+constexpr uint32_t kTileWidth = 64, kTileHeight = 16;
+
+void check_row(uint32_t index, const Row& row) {
+  // Up to 2: the march with published weights in a narrow cone.
+  if (!(row.direct_over_pi >= 0 && row.direct_over_pi <= 2))
+    throw std::logic_error(fmt::format("row {}: E0/pi is {}, expected 0..2", index, row.direct_over_pi));
+}
+
+TracerCounts sum(const std::vector<TracerCounts>& counts) {
+  TracerCounts total;
+  for (const TracerCounts& c : counts) {
+    total.rays += c.rays;
+    total.cut_short += c.cut_short;
+  }
+  return total;
+}
+
 // Traces rows [0, row_count) block by block: neighbours that the tracer may answer together; store(index,
 // row) keeps what the caller wants of each.
 template <class TraceRows, class Store>
-TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, const TraceRows& trace_rows,
+TracerCounts trace_blocks(uint32_t row_count, Links& links, Progress& progress, const TraceRows& trace_rows,
                           const Store& store) {
   const size_t block_count = (row_count + Links::kRowsPerBlock - 1) / Links::kRowsPerBlock;
   std::vector<TracerCounts> counts(block_count);
@@ -27,32 +45,49 @@ TracerCounts trace_blocks(uint32_t row_count, Links* links, Progress& progress, 
       const std::span<Row> block_rows(rows.data(), std::min(Links::kRowsPerBlock, row_count - begin));
       trace_rows(begin, block_rows, counts[b]);
       for (uint32_t i = 0; i < block_rows.size(); ++i) {
-        const Row& row = block_rows[i];
-        // Up to 2: the march with published weights in a narrow cone.
-        if (!(row.direct_over_pi >= 0 && row.direct_over_pi <= 2))
-          throw std::logic_error(
-              fmt::format("row {}: E0/pi is {}, expected 0..2", begin + i, row.direct_over_pi));
-        store(begin + i, row);
-        if (links != nullptr) append_row(links->blocks[b], row.links);
+        check_row(begin + i, block_rows[i]);
+        store(begin + i, block_rows[i]);
+        append_row(links.blocks[b], block_rows[i].links);
       }
-      if (links != nullptr) {
-        links->blocks[b].patches.shrink_to_fit();
-        links->blocks[b].weights.shrink_to_fit();
-      }
+      finish_block(links, b);
       progress.advance(block_rows.size());
     }
   });
-  TracerCounts total;
-  for (const TracerCounts& c : counts) {
-    total.rays += c.rays;
-    total.cut_short += c.cut_short;
-  }
-  return total;
+  return sum(counts);
+}
+
+// Traces every texel tile by tile; store(texel, row) keeps what the caller wants of each.
+template <class Store>
+TracerCounts trace_tiles(const Tracer& tracer, uint32_t width, uint32_t height, Progress& progress,
+                         const Store& store) {
+  const uint32_t columns = (width + kTileWidth - 1) / kTileWidth;
+  const uint32_t rows_of_tiles = (height + kTileHeight - 1) / kTileHeight;
+  std::vector<TracerCounts> counts(size_t{columns} * rows_of_tiles);
+  parallel_for(counts.size(), 1, [&](size_t first, size_t last) {
+    std::vector<Row> rows(kTileWidth * kTileHeight);
+    for (size_t t = first; t < last; ++t) {
+      TexelTile tile{static_cast<uint32_t>(t % columns) * kTileWidth,
+                     static_cast<uint32_t>(t / columns) * kTileHeight, kTileWidth, kTileHeight};
+      tile.width = std::min(tile.width, width - tile.x);
+      tile.height = std::min(tile.height, height - tile.y);
+      tracer.trace_tile(width, tile, {rows.data(), size_t{tile.width} * tile.height}, counts[t]);
+      for (uint32_t j = 0; j < tile.height; ++j)
+        for (uint32_t i = 0; i < tile.width; ++i) {
+          const uint32_t texel = (tile.y + j) * width + tile.x + i;
+          const Row& row = rows[size_t{j} * tile.width + i];
+          check_row(texel, row);
+          store(texel, row);
+        }
+      progress.advance(size_t{tile.width} * tile.height);
+    }
+  });
+  return sum(counts);
 }
 
 }  // namespace
 
-Visibility trace_surface(const Tracer& tracer, int width, int height, Patches patches, bool with_links) {
+Visibility trace_surface(const Tracer& tracer, int width, int height, Patches patches, bool with_links,
+                         const std::shared_ptr<SpillFile>& spill) {
   Visibility seen;
   seen.visible_fraction = Grid<float>(width, height);
   seen.direct_over_pi = Grid<float>(width, height);
@@ -63,23 +98,29 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
   const uint32_t patch_count = tracer.patches().count;
   Progress progress("tracing", uint64_t{texels} + (trace_patches ? patch_count : 0), "receiver");
 
-  if (with_links) seen.gather = make_links(texels, patch_count);
+  const auto store_texel = [&](uint32_t texel, const Row& row) {
+    seen.visible_fraction[texel] = static_cast<float>(row.visible_fraction);
+    seen.direct_over_pi[texel] = static_cast<float>(row.direct_over_pi);
+    seen.bent_normals[texel] = glm::vec3(row.bent_normal);
+  };
+  if (!with_links) {
+    seen.counts = trace_tiles(tracer, static_cast<uint32_t>(width), static_cast<uint32_t>(height), progress,
+                              store_texel);
+    return seen;
+  }
+  seen.gather = make_links(texels, patch_count, spill);
   seen.counts = trace_blocks(
-      texels, with_links ? &seen.gather : nullptr, progress,
+      texels, seen.gather, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
-        tracer.trace_texels(first, with_links, rows, counts);
+        tracer.trace_texels(first, true, rows, counts);
       },
-      [&](uint32_t texel, const Row& row) {
-        seen.visible_fraction[texel] = static_cast<float>(row.visible_fraction);
-        seen.direct_over_pi[texel] = static_cast<float>(row.direct_over_pi);
-        seen.bent_normals[texel] = glm::vec3(row.bent_normal);
-      });
+      store_texel);
   if (!trace_patches) return seen;
 
-  seen.patches = make_links(patch_count, patch_count);
+  seen.patches = make_links(patch_count, patch_count, spill);
   seen.patch_direct_over_pi.resize(patch_count);
   const TracerCounts of_patches = trace_blocks(
-      patch_count, &seen.patches, progress,
+      patch_count, seen.patches, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_patches(first, true, rows, counts);
       },

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <memory>
 #include <vector>
 
 #include "core/grid.h"
@@ -27,7 +28,9 @@ struct Visibility {
 };
 
 // width × height: of the map the tracer was made for. Links are built only if `with_links`. The same bytes at
-// any thread count. Throws Interrupted between blocks of rows.
-Visibility trace_surface(const Tracer& tracer, int width, int height, Patches patches, bool with_links);
+// any thread count. spill: where links go that memory does not hold; none: they stay in memory. Throws
+// Interrupted between blocks of rows.
+Visibility trace_surface(const Tracer& tracer, int width, int height, Patches patches, bool with_links,
+                         const std::shared_ptr<SpillFile>& spill = nullptr);
 
 }  // namespace hemibake

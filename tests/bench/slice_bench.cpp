@@ -14,6 +14,7 @@
 #include <string>
 
 #include "bench/bare_scene.h"
+#include "bench/equal_error.h"
 #include "core/constants.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
@@ -29,11 +30,6 @@ namespace hemibake {
 namespace {
 
 constexpr double kErrorWanted = 0.0025;
-
-struct Measured {
-  double cpu_seconds;
-  double error;  // rms over texels
-};
 
 struct Planes {
   std::vector<float> uniform, direct, bounced;  // α, E₀/π, E₁/π; the last one only with links
@@ -68,13 +64,8 @@ Planes rays(const Surface& surface, int count, DirectionSet set, bool with_links
   return trace(*make_embree_tracer(surface, options), surface, with_links);
 }
 
-// CPU seconds where the error is kErrorWanted, on the power law through the two nearest measurements.
 double seconds_at_wanted_error(const std::vector<Measured>& runs) {
-  size_t i = 1;
-  while (i + 1 < runs.size() && runs[i].error > kErrorWanted) ++i;
-  const Measured &a = runs[i - 1], &b = runs[i];
-  const double exponent = std::log(b.cpu_seconds / a.cpu_seconds) / std::log(b.error / a.error);
-  return b.cpu_seconds * std::pow(kErrorWanted / b.error, exponent);
+  return seconds_at_error(runs, kErrorWanted);
 }
 
 // Rays per CPU second in packets of 16 neighbours over single rays, both through a bare scene.

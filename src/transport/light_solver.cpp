@@ -1,0 +1,87 @@
+#include "transport/light_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/parallel.h"
+
+namespace hemibake {
+namespace {
+
+constexpr size_t kGrain = 16384;
+constexpr size_t kDirectionsKept = 4;
+
+// Summed piece by piece, in an order that does not depend on the threads.
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> pieces((a.size() + kGrain - 1) / kGrain);
+  parallel_for(a.size(), kGrain, [&](size_t begin, size_t end) {
+    double sum = 0;
+    for (size_t i = begin; i < end; ++i) sum += a[i] * b[i];
+    pieces[begin / kGrain] = sum;
+  });
+  double sum = 0;
+  for (const double piece : pieces) sum += piece;
+  return sum;
+}
+
+// a += factor · b
+void add_scaled(double factor, const std::vector<double>& b, std::vector<double>& a) {
+  parallel_for(a.size(), kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) a[i] += factor * b[i];
+  });
+}
+
+}  // namespace
+
+LightSolver::LightSolver(const Links& links, std::span<const float> albedo, std::vector<double> start,
+                         std::vector<double> residual)
+    : links_(links), albedo_(albedo), light_(std::move(start)), residual_(std::move(residual)) {}
+
+bool LightSolver::step() {
+  Direction next;
+  if (kept_.size() == kDirectionsKept) next = std::move(kept_[oldest_]);
+  const bool replaces = !next.change.empty();
+  next.change = residual_;
+  reflect(links_, albedo_, residual_, next.reduction);
+  parallel_for(next.change.size(), kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) next.reduction[i] = next.change[i] - next.reduction[i];
+  });
+  for (const Direction& direction : kept_) {
+    if (direction.change.empty()) continue;
+    const double share = -dot(next.reduction, direction.reduction) / direction.norm_squared;
+    add_scaled(share, direction.change, next.change);
+    add_scaled(share, direction.reduction, next.reduction);
+  }
+  next.norm_squared = dot(next.reduction, next.reduction);
+  const double length = dot(residual_, next.reduction) / next.norm_squared;
+  if (!std::isfinite(length) || length == 0) return false;
+  add_scaled(length, next.change, light_);
+  add_scaled(-length, next.reduction, residual_);
+  if (replaces) {
+    kept_[oldest_] = std::move(next);
+    oldest_ = (oldest_ + 1) % kDirectionsKept;
+  } else {
+    kept_.push_back(std::move(next));
+  }
+  return true;
+}
+
+double LightSolver::largest_residual() const {
+  double largest = 0;
+  for (const double value : residual_) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+void reflect(const Links& links, std::span<const float> albedo, std::span<const double> light,
+             std::vector<double>& out) {
+  out.resize(links.rows);
+  if (albedo.empty()) return gather(links, light, out);
+  std::vector<double> reflected(light.size());
+  parallel_for(light.size(), kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) reflected[i] = static_cast<double>(albedo[i]) * light[i];
+  });
+  gather(links, reflected, out);
+}
+
+}  // namespace hemibake

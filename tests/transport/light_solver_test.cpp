@@ -1,0 +1,126 @@
+#include "transport/light_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/parallel.h"
+#include "support/maps.h"
+#include "tracers/slice.h"
+#include "transport/trace_surface.h"
+
+namespace hemibake {
+namespace {
+
+Visibility see(const Surface& surface) {
+  SliceOptions options;
+  options.azimuths = 8;
+  return trace_surface(*make_slice_tracer(surface, options), surface.width(), surface.height(),
+                       Patches::kFacets, true);
+}
+
+std::vector<double> direct_of(const Visibility& seen) {
+  return {seen.patch_direct().begin(), seen.patch_direct().end()};
+}
+
+// E = direct + W diag(albedo) E by Gaussian elimination with pivots.
+std::vector<double> solve_densely(const Links& links, const std::vector<float>& albedo,
+                                  std::vector<double> right) {
+  const size_t n = links.rows;
+  std::vector<std::vector<double>> matrix(n, std::vector<double>(n));
+  for (size_t column = 0; column < n; ++column) {
+    std::vector<double> one(n), product(n);
+    one[column] = static_cast<double>(albedo[column]);
+    gather(links, one, product);
+    for (size_t row = 0; row < n; ++row) matrix[row][column] = (row == column) - product[row];
+  }
+  for (size_t k = 0; k < n; ++k) {
+    size_t pivot = k;
+    for (size_t row = k; row < n; ++row)
+      if (std::abs(matrix[row][k]) > std::abs(matrix[pivot][k])) pivot = row;
+    std::swap(matrix[k], matrix[pivot]);
+    std::swap(right[k], right[pivot]);
+    for (size_t row = k + 1; row < n; ++row) {
+      const double factor = matrix[row][k] / matrix[k][k];
+      for (size_t column = k; column < n; ++column) matrix[row][column] -= factor * matrix[k][column];
+      right[row] -= factor * right[k];
+    }
+  }
+  for (size_t k = n; k-- > 0;) {
+    for (size_t column = k + 1; column < n; ++column) right[k] -= matrix[k][column] * right[column];
+    right[k] /= matrix[k][k];
+  }
+  return right;
+}
+
+// Products until no residual exceeds `tolerance`, light in `light`.
+int solve(const Visibility& seen, const std::vector<float>& albedo, double tolerance,
+          std::vector<double>& light) {
+  const std::vector<double> direct = direct_of(seen);
+  LightSolver solver(seen.patches, albedo, std::vector<double>(direct.size()), direct);
+  int products = 0;
+  while (solver.largest_residual() > tolerance && solver.step()) ++products;
+  light = solver.light();
+  return products;
+}
+
+TEST(LightSolver, AgreesWithEliminationAtAnyAlbedo) {
+  const Visibility seen = see(white_noise_surface(7, 5, 0.2));
+  const size_t patches = seen.patches.rows;
+  for (const float albedo : {0.0f, 0.5f, 0.999999f, 1.0f, -1.0f}) {
+    std::vector<float> albedos(patches, albedo);
+    // Below 0: every patch another one.
+    for (size_t i = 0; i < patches && albedo < 0; ++i) albedos[i] = static_cast<float>(i * 7 % 11) / 10;
+    std::vector<double> light;
+    solve(seen, albedos, 1e-13, light);
+    const std::vector<double> exact = solve_densely(seen.patches, albedos, direct_of(seen));
+    // The residual times what light can add up to, some hundred on such a map.
+    for (size_t i = 0; i < patches; ++i) ASSERT_NEAR(light[i], exact[i], 1e-10) << albedo;
+  }
+}
+
+// Deep pits at albedo 1, where the light is 1 everywhere in the end: neither made nor lost.
+TEST(LightSolver, TakesAFractionOfTheBounces) {
+  const Visibility seen = see(white_noise_surface(20, 20, 0.5));
+  const std::vector<double> direct = direct_of(seen);
+  const auto furthest = [](const std::vector<double>& light) {
+    double distance = 0;
+    for (const double value : light) distance = std::max(distance, std::abs(1 - value));
+    return distance;
+  };
+  LightSolver solver(seen.patches, {}, std::vector<double>(direct.size()), direct);
+  int products = 0, bounces = 0;
+  while (furthest(solver.light()) > 1e-6 && solver.step()) ++products;
+  EXPECT_LE(furthest(solver.light()), 1e-6);
+  std::vector<double> last = direct, sum = direct, next;
+  for (; furthest(sum) > 1e-6 && bounces < 5000; ++bounces) {
+    reflect(seen.patches, {}, last, next);
+    last.swap(next);
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += last[i];
+  }
+  EXPECT_LT(3 * products, bounces) << products;
+}
+
+TEST(LightSolver, EndsWhereNothingIsLeft) {
+  const Visibility seen = see(white_noise_surface(8, 8, 0.1));
+  const size_t patches = seen.patches.rows;
+  LightSolver dark(seen.patches, {}, std::vector<double>(patches), std::vector<double>(patches));
+  EXPECT_FALSE(dark.step());
+  EXPECT_EQ(dark.largest_residual(), 0);
+}
+
+TEST(LightSolver, SameBytesAtAnyThreadCount) {
+  const Visibility seen = see(white_noise_surface(48, 48, 0.1));
+  std::vector<double> one, two;
+  set_thread_count(1);
+  solve(seen, {}, 1e-8, one);
+  set_thread_count(2);
+  solve(seen, {}, 1e-8, two);
+  set_thread_count(0);
+  EXPECT_EQ(one, two);
+}
+
+}  // namespace
+}  // namespace hemibake
