@@ -93,7 +93,8 @@ void add_render_options(CLI::App& app, RenderOptions& options) {
       ->check(CLI::IsMember({"traced", "sh"}))
       ->capture_default_str()
       ->group("Light");
-  app.add_option("--sky-rays", options.sky_rays, "rays per texel and patch to a sky that is not uniform")
+  app.add_option("--sky-rays", options.sky_rays,
+                 "rays per texel, and about as many per facet, to a sky that is not uniform")
       ->check(whole_number_in(1, 1 << 20))
       ->capture_default_str()
       ->group("Light");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <limits>
 
 #include "core/constants.h"
@@ -16,14 +17,17 @@ namespace {
 // The largest ratio a series is continued with: nothing is brighter for bounces after about the thousandth.
 constexpr double kLargestRatio = 0.999;
 
-// last · (q + q² + …), q = last/before.
-double rest_of_series(double before, double last) {
+// last · (q + q² + …), q = last/before, but no more than `albedo`, the most that any bounce sends on: in a
+// pit that light is still seeping into, one bounce may bring more than the one before, and all bounces
+// cannot.
+double rest_of_series(double before, double last, double albedo) {
   if (!(before > 0 && last > 0)) return 0;
-  const double ratio = std::min(last / before, kLargestRatio);
+  const double ratio = std::min({last / before, albedo, kLargestRatio});
   return last * ratio / (1 - ratio);
 }
 
-void add_up(Relit& relit, double most) {
+// albedo: the largest on the wall, per channel.
+void add_up(Relit& relit, const glm::vec3& albedo, double most) {
   const size_t count = relit.bounces.size();
   const Grid<glm::vec3>& first = relit.bounces[0];
   relit.total = Grid<glm::vec3>(first.width, first.height);
@@ -35,7 +39,8 @@ void add_up(Relit& relit, double most) {
       double rest = 0;
       if (count >= 3)
         rest = std::min(rest_of_series(static_cast<double>(relit.bounces[count - 2][i][c]),
-                                       static_cast<double>(relit.bounces[count - 1][i][c])),
+                                       static_cast<double>(relit.bounces[count - 1][i][c]),
+                                       static_cast<double>(albedo[c])),
                         std::max(0.0, most - sum));
       relit.total[i][c] = static_cast<float>(sum + rest);
       rests.add(rest);
@@ -66,7 +71,7 @@ Relit relight_constant(const std::vector<Grid<float>>& irradiance, const glm::ve
     relit.bounces.push_back(std::move(bounce));
     power *= glm::dvec3(albedo);
   }
-  add_up(relit, kPi);
+  add_up(relit, albedo, kPi);
   return relit;
 }
 
@@ -92,7 +97,9 @@ Relit relight_over_links(const Visibility& seen, const ColoredLight& direct,
       light.swap(next);
     }
   }
-  add_up(relit, most.value_or(std::numeric_limits<double>::infinity()));
+  glm::vec3 largest(0);
+  for (const glm::vec3& albedo : patch_albedo) largest = glm::max(largest, albedo);
+  add_up(relit, largest, most.value_or(std::numeric_limits<double>::infinity()));
   return relit;
 }
 

@@ -30,8 +30,8 @@ struct Relit {
   // What arrives after b bounces, b = 0, 1, …: reflected at every bounce with the albedo of where it was.
   std::vector<Grid<glm::vec3>> bounces;
   Grid<glm::vec3> total;  // all of them, and `rest`
-  // What the bounces after the last are worth, as a geometric series with the ratio of the last two: mean and
-  // largest over texels and channels. None with fewer than two bounces.
+  // What the bounces after the last are worth, as a geometric series with the ratio of the last two, at most
+  // the largest albedo: mean and largest over texels and channels. None with fewer than two bounces.
   double mean_rest = 0, largest_rest = 0;
 };
 

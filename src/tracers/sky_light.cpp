@@ -13,6 +13,7 @@
 #include "surface/facets.h"
 #include "surface/frame.h"
 #include "tracers/height_walk.h"
+#include "tracers/ray_options.h"
 
 namespace hemibake {
 namespace {
@@ -53,17 +54,18 @@ bool sees(const HeightWalk& walk, const SurfacePoint& from, double lift, const g
   return walk.follow(from.position + glm::dvec3(0, 0, lift), direction, hit) != WalkEnd::kHit;
 }
 
-// ∫ (L − mean) V max(0, n·ω) dω + mean · E₀, with starts and normals that `start(receiver, u)` gives.
-template <class Start>
+// ∫ (L − mean) V max(0, n·ω) dω + mean · E₀, with as many rays as `rays_of(receiver)` says and starts and
+// normals that `start(receiver, u)` gives.
+template <class Rays, class Start>
 std::vector<glm::dvec3> sky_light(const HeightWalk& walk, std::span<const float> direct_over_pi,
                                   const Radiance& radiance, const SkyLightOptions& options, uint64_t stream,
-                                  const Start& start) {
+                                  const Rays& rays_of, const Start& start) {
   std::vector<glm::dvec3> light(direct_over_pi.size());
-  const auto rays = static_cast<uint32_t>(options.rays);
   const double lift = walk.start_lift(kLiftTexels);
-  Progress progress("tracing the sky", light.size() * uint64_t{rays}, "ray");
+  Progress progress("tracing the sky", light.size(), "receiver");
   parallel_for(light.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t receiver = begin; receiver < end; ++receiver) {
+      const auto rays = static_cast<uint32_t>(rays_of(receiver));
       double shift[4];
       for (uint64_t k = 0; k < 4; ++k)
         shift[k] = unit_interval(mix_bits(options.seed, stream, 4 * receiver + k));
@@ -80,7 +82,7 @@ std::vector<glm::dvec3> sky_light(const HeightWalk& walk, std::span<const float>
       light[receiver] = kPi * (sum / static_cast<double>(rays) +
                                static_cast<double>(direct_over_pi[receiver]) * options.mean_radiance);
     }
-    progress.advance((end - begin) * rays);
+    progress.advance(end - begin);
   });
   return light;
 }
@@ -124,8 +126,9 @@ std::vector<glm::dvec3> sky_light_of_texels(const Surface& surface, std::span<co
                                             const Radiance& radiance, const SkyLightOptions& options) {
   expect_equal(direct_over_pi.size(), size_t{surface.texel_count()}, "texels given to sky_light_of_texels");
   const HeightWalk walk(surface);
-  return sky_light(walk, direct_over_pi, radiance, options, kTexelStream,
-                   [&](size_t texel, const glm::dvec2&) { return texel_center(surface, texel); });
+  return sky_light(
+      walk, direct_over_pi, radiance, options, kTexelStream, [&](size_t) { return options.rays; },
+      [&](size_t texel, const glm::dvec2&) { return texel_center(surface, texel); });
 }
 
 std::vector<glm::dvec3> sky_light_of_patches(const Surface& surface, const PatchSet& patches,
@@ -133,7 +136,10 @@ std::vector<glm::dvec3> sky_light_of_patches(const Surface& surface, const Patch
                                              const SkyLightOptions& options) {
   expect_equal(direct_over_pi.size(), size_t{patches.count}, "patches given to sky_light_of_patches");
   const HeightWalk walk(surface);
-  return sky_light(walk, direct_over_pi, radiance, options, kPatchStream,
+  const auto rays_of = [&](size_t patch) {
+    return rays_per_node(options.rays, run_of_patch(patches, static_cast<uint32_t>(patch)).subdivision);
+  };
+  return sky_light(walk, direct_over_pi, radiance, options, kPatchStream, rays_of,
                    [&](size_t patch, const glm::dvec2& u) { return patch_start(walk, patches, patch, u); });
 }
 

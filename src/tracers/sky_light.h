@@ -17,7 +17,7 @@ namespace hemibake {
 using Radiance = std::function<glm::dvec3(const glm::dvec3& direction)>;
 
 struct SkyLightOptions {
-  int rays = 256;  // per receiver, cosine-distributed, 1..
+  int rays = 256;  // per texel, cosine-distributed, 1..; per patch see rays_per_node (tracers/ray_options.h)
   uint64_t seed = 0;
   // The rays measure how the light differs from that of a sky of this radiance everywhere, which the tracer
   // knows already: a sky close to it needs few, one that is it needs none.

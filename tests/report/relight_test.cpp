@@ -120,6 +120,10 @@ TEST(Relight, RestOfASeriesIsExact) {
   EXPECT_NEAR(relit.total[0].x, a / (1 - 0.9 * q), 5e-6);  // ratio to 2⁻²³, over (1 − 0.81)²
   EXPECT_NEAR(relit.total[0].y, a / (1 - 0.5 * q), 1e-6);
   EXPECT_FLOAT_EQ(relit.total[0].z, static_cast<float>(a));
+  // Light that still seeps in: no bounce sends on more than the albedo.
+  const std::vector<Grid<float>> rising = {Grid<float>(1, 1, 0.1f), Grid<float>(1, 1, 0.2f),
+                                           Grid<float>(1, 1, 0.4f)};
+  EXPECT_NEAR(relight_constant(rising, glm::vec3(0.5f)).largest_rest, 0.25 * 0.4, 1e-6);
   irradiance.resize(1);
   EXPECT_EQ(relight_constant(irradiance, glm::vec3(1)).largest_rest, 0) << "one bounce is no series";
 }
