@@ -20,6 +20,10 @@ void add_link(const Surface& surface, int x, int y, double weight, std::vector<L
 
 constexpr uint32_t kFree = 0xffffffff;
 
+// Texels: a hit nearer than this is linked to all nodes around it. It is the distance of the nodes of a long
+// facet; in a deep fold most rays hit nearer.
+constexpr double kNear = 0.25;
+
 // Leaves each patch once, in order of its first link, weights summed in double in the order of the links. A
 // hash table of the patches met so far: most rays of a row meet a patch that another one met, and sorting
 // them all costs more.
@@ -64,7 +68,7 @@ void add_bilinear_links(const Surface& surface, glm::dvec2 position, double weig
 
 void add_node_links(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double distance_texels,
                     double choice, double weight, std::vector<Link>& links) {
-  if (distance_texels >= 1) {
+  if (distance_texels >= kNear) {
     links.push_back({draw_patch(patches, facet, uv, choice), static_cast<float>(weight)});
     return;
   }
