@@ -69,8 +69,13 @@ SlicePaths make_turned_paths(int azimuths, int paths) {
   return family;
 }
 
+// Where in its share of the circle a turn begins: nowhere near a simple fraction, so that no path runs
+// exactly along the grid or a diagonal. On a wrapping map such a path meets the same few texels for ever, and
+// is followed to the far limit where the highest one is not among them.
+constexpr double kTurnOffset = 0.381966011;
+
 double angle_of(const SlicePaths& family, int turn, int azimuth) {
-  return 2 * kPi * (azimuth + (turn + 0.5) / family.turns) / family.azimuths;
+  return 2 * kPi * (azimuth + (turn + kTurnOffset) / family.turns) / family.azimuths;
 }
 
 class SliceTracer final : public Tracer {

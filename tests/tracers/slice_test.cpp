@@ -314,9 +314,9 @@ TEST(SliceTracer, ExtremesStayFinite) {
   }
 }
 
-// Azimuths along the grid lines and the diagonals to the last bit: with six azimuths and their 85 turns the
-// middle turn points along the axes.
-TEST(SliceTracer, AzimuthsAlongGridLinesEnd) {
+// Azimuths near the grid lines and the diagonals end, on a wrapping map too, where a path along a line of
+// texels lower than the highest would go on to the far limit.
+TEST(SliceTracer, AzimuthsNearGridLinesEnd) {
   for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
     const Surface surface = white_noise_surface(64, 64, 0.1, edge);
     for (const int count : {1, 2, 4, 6, 8, 10, 512}) {
