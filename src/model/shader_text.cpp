@@ -108,7 +108,7 @@ $function float blocked_irradiance(float ao) {
 $function float escape_share(float ao) {
   float a = unit_range(ao);
   float b = #1 - a;
-  float first = $a * a * b * $sqrt(b) * $exp(-$b * $sqrt($sqrt(a)));
+  float first = $a * a * b * $sqrt(b) * $exp($negative_b * $sqrt($sqrt(a)));
   float blocked = blocked_irradiance(ao);
   return first < blocked ? $max(first / blocked, #tiny) : #1;
 }
@@ -196,7 +196,7 @@ std::string shader_text(const GuardedModel& model, Language language,
                         const std::vector<std::string>& origin) {
   const PublishedModel& p = model.published;
   const Constants constants = {
-      {"$k", p.k}, {"$e", p.e}, {"$a", p.a}, {"$b", p.b}, {"#tiny", kSmallestEscape}};
+      {"$k", p.k}, {"$e", p.e}, {"$a", p.a}, {"$negative_b", -p.b}, {"#tiny", kSmallestEscape}};
   return assemble(kGuarded, constants, language, origin);
 }
 

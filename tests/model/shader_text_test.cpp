@@ -104,6 +104,15 @@ TEST(ShaderText, EveryModelCompilesAsGlslAndHlsl) {
   expect_compiles(kPublished);
 }
 
+// A fit may bring any constant of either sign: "--" would be another operator.
+TEST(ShaderText, NegativeConstantsAreNoOperators) {
+  GuardedModel model = kPublished;
+  model.published.b = -0.815;
+  model.published.k = -0.25;
+  for (const Language language : {Language::glsl, Language::hlsl, Language::cpp})
+    EXPECT_EQ(shader_text(model, language, {}).find("--"), std::string::npos);
+}
+
 TEST(ShaderText, OriginStaysInsideItsComments) {
   const std::string text = shader_text(kBounded, Language::glsl, {"a\nfloat b;\\", "c"});
   EXPECT_EQ(text.substr(0, text.find("// c\n")), "// a/float b;/\n");
