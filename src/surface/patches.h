@@ -55,6 +55,10 @@ glm::dvec2 node_uv(int k, uint32_t node);
 constexpr uint32_t node_at(int k, int column, int row) {
   return static_cast<uint32_t>(row * (k + 1) - row * (row - 1) / 2 + column);
 }
+// Whether it is a corner of the facet.
+constexpr bool is_corner(int k, uint32_t node) {
+  return node == 0 || node == node_at(k, k, 0) || node == node_at(k, 0, k);
+}
 
 // Sixteen neighbours, or what is left of them at the end of a row.
 struct PatchRun {

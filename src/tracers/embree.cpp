@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <span>
@@ -54,7 +55,7 @@ class EmbreeTracer final : public Tracer {
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
 
  private:
-  // What the nodes of facets cut alike share.
+  // What nodes of one kind share.
   struct NodeRays {
     std::vector<glm::vec2> azimuths;  // unit, tangent plane, one per ray
     std::vector<glm::dvec2> points;   // in the unit square, one per ray
@@ -66,6 +67,10 @@ class EmbreeTracer final : public Tracer {
     }
   };
 
+  // Nodes of facets cut alike are of two kinds: corners and others.
+  static size_t node_kind(int k, uint32_t node) {
+    return (k == kFineSubdivision ? 2 : 0) + (is_corner(k, node) ? 1 : 0);
+  }
   static NodeRays make_node_rays(int rays);
   EmbreeTracer(const EmbreeTracer&) = default;
   void build_scene();
@@ -89,7 +94,7 @@ class EmbreeTracer final : public Tracer {
   RayOptions options_;
   PatchSet patches_;
   std::vector<WeightedDirection> texel_directions_;
-  NodeRays coarse_rays_, fine_rays_;
+  std::array<NodeRays, 4> node_rays_;  // by node_kind
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
   bool wrap_;
@@ -110,8 +115,6 @@ EmbreeTracer::EmbreeTracer(const Surface& surface, const RayOptions& options)
       options_(options),
       patches_(make_patches(surface, options.patches)),
       texel_directions_(make_directions(options.directions, options.rays, options.cone_degrees)),
-      coarse_rays_(make_node_rays(rays_per_node(options.rays, kCoarseSubdivision))),
-      fine_rays_(make_node_rays(rays_per_node(options.rays, kFineSubdivision))),
       wrap_(surface.edge == Edge::kWrap) {
   const double range = height_range_m(surface) / surface.texel_size_m;
   top_texels_ = static_cast<float>(range);
@@ -127,6 +130,9 @@ EmbreeTracer::EmbreeTracer(const Surface& surface, const RayOptions& options)
   margin_ = wrap_ ? kMargin : 0;
   const double smallest_block = std::min(block_width_, block_height_);
   cut_distance_texels_ = std::min(std::max(1e5 * range, 16 * smallest_block), 1e6 * smallest_block);
+  for (const int k : {kCoarseSubdivision, kFineSubdivision})
+    for (const uint32_t node : {node_at(k, 0, 0), node_at(k, 1, 0)})
+      node_rays_[node_kind(k, node)] = make_node_rays(rays_per_node(options.rays, k, node));
   build_scene();
 }
 
@@ -384,7 +390,7 @@ void EmbreeTracer::trace_patch(uint32_t patch, bool with_links, Row& row, Tracer
 
 void EmbreeTracer::trace_node(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const {
   const FacetNode node = facet_node(patches_, patch);
-  const NodeRays& set = node.subdivision == kFineSubdivision ? fine_rays_ : coarse_rays_;
+  const NodeRays& set = node_rays_[node_kind(node.subdivision, node.node)];
   const auto random = [&](uint64_t stream) { return unit_interval(mix_bits(options_.seed, stream, patch)); };
 
   const auto corners = facet_positions_texels(surface_, node.facet);

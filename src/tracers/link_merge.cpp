@@ -20,9 +20,10 @@ void add_link(const Surface& surface, int x, int y, double weight, std::vector<L
 
 constexpr uint32_t kFree = 0xffffffff;
 
-// Texels: a hit nearer than this is linked to all nodes around it. It is the distance of the nodes of a long
-// facet; in a deep fold most rays hit nearer.
+// Texels: a hit nearer than this is drawn kNearDraws times. It is the distance of the nodes of a long facet;
+// in a deep fold most rays hit nearer.
 constexpr double kNear = 0.25;
+constexpr int kNearDraws = 4;
 
 // Leaves each patch once, in order of its first link, weights summed in double in the order of the links. A
 // hash table of the patches met so far: most rays of a row meet a patch that another one met, and sorting
@@ -68,12 +69,10 @@ void add_bilinear_links(const Surface& surface, glm::dvec2 position, double weig
 
 void add_node_links(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double distance_texels,
                     double choice, double weight, std::vector<Link>& links) {
-  if (distance_texels >= kNear) {
-    links.push_back({draw_patch(patches, facet, uv, choice), static_cast<float>(weight)});
-    return;
-  }
-  for (const PatchShare& share : patch_shares(patches, facet, uv))
-    if (share.share > 0) links.push_back({share.patch, static_cast<float>(weight * share.share)});
+  const int draws = distance_texels < kNear ? kNearDraws : 1;
+  for (int draw = 0; draw < draws; ++draw)
+    links.push_back(
+        {draw_patch(patches, facet, uv, (draw + choice) / draws), static_cast<float>(weight / draws)});
 }
 
 void combine_links(std::vector<Link>& links) {

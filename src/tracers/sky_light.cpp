@@ -137,7 +137,8 @@ std::vector<glm::dvec3> sky_light_of_patches(const Surface& surface, const Patch
   expect_equal(direct_over_pi.size(), size_t{patches.count}, "patches given to sky_light_of_patches");
   const HeightWalk walk(surface);
   const auto rays_of = [&](size_t patch) {
-    return rays_per_node(options.rays, run_of_patch(patches, static_cast<uint32_t>(patch)).subdivision);
+    const FacetNode node = facet_node(patches, static_cast<uint32_t>(patch));
+    return rays_per_node(options.rays, node.subdivision, node.node);
   };
   return sky_light(walk, direct_over_pi, radiance, options, kPatchStream, rays_of,
                    [&](size_t patch, const glm::dvec2& u) { return patch_start(walk, patches, patch, u); });

@@ -152,7 +152,7 @@ SlicePaths SliceTracer::make_texel_paths() const {
 }
 
 SlicePaths SliceTracer::make_node_paths(int k, uint32_t half, uint32_t node) const {
-  SlicePaths paths = make_turned_paths(azimuths_per_node(options_.azimuths, k), kNodePaths);
+  SlicePaths paths = make_turned_paths(azimuths_per_node(options_.azimuths, k, node), kNodePaths);
   for (int turn = 0; turn < paths.turns; ++turn) {
     const uint64_t place = 2 * static_cast<uint64_t>(turn);
     const double shift_u = unit_interval(mix_bits(options_.seed, kNodeShift, place));
