@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 
 #include "core/constants.h"
 #include "core/parallel.h"
@@ -15,7 +14,7 @@ namespace {
 
 constexpr uint32_t kSample = 2048;  // texels, and nodes, traced again
 constexpr uint64_t kSampleStream = 0xe440;
-constexpr int kHalfBounces = 12;  // at albedo ½ the rest is below 10⁻³ of the first bounce
+constexpr size_t kHalfBounces = 8;  // at albedo ½ the rest is below 1/256 of the first
 constexpr size_t kBins = 50;
 
 // One at random in each of equal strata of [0, count).
@@ -36,11 +35,49 @@ struct Noise {
 
 double deviation(const Moments& squares) { return std::sqrt(squares.mean / 2); }
 
-// The sampled texels again, with the same light of the patches.
-Noise trace_again(const Tracer& again, const Visibility& seen, const Bounces& bounces) {
+// Noise of the direct light of the nodes. What a node sees is so much of its rays: their variance goes like
+// E (1 − E), E the direct light over π, and like one over their number, which nodes of one kind share.
+struct NodeNoise {
+  static constexpr size_t kKinds = 4;
+  double mean_variance = 0;
+  std::array<double, kKinds> per_binomial{};  // variance over E (1 − E)
+};
+
+size_t node_kind(const PatchSet& patches, uint32_t patch) {
+  if (patches.kind == Patches::kTexels) return 0;
+  const FacetNode node = facet_node(patches, patch);
+  return (node.subdivision == kFineSubdivision ? 2 : 0) + (is_corner(node.subdivision, node.node) ? 1 : 0);
+}
+
+double binomial(double share) { return share * (1 - share); }
+
+NodeNoise node_noise(const Tracer& again, const Visibility& seen) {
+  Moments all;
+  std::array<Moments, NodeNoise::kKinds> squares, binomials;
+  Row row;
+  TracerCounts counts;
+  for (const uint32_t node : sample_places(again.patches().count)) {
+    again.trace_patch(node, false, row, counts);
+    const double direct = static_cast<double>(seen.patch_direct()[node]);
+    const double variance = (row.direct_over_pi - direct) * (row.direct_over_pi - direct) / 2;
+    const size_t kind = node_kind(again.patches(), node);
+    all.add(variance);
+    squares[kind].add(variance);
+    binomials[kind].add(binomial(direct));
+  }
+  NodeNoise noise;
+  noise.mean_variance = all.mean;
+  for (size_t kind = 0; kind < NodeNoise::kKinds; ++kind)
+    if (binomials[kind].mean > 0) noise.per_binomial[kind] = squares[kind].mean / binomials[kind].mean;
+  return noise;
+}
+
+// The sampled texels again, with the same light of the patches; its noise comes on top.
+Noise trace_again(const Tracer& again, const Visibility& seen, const Bounces& bounces,
+                  const NodeNoise& nodes) {
   const std::vector<uint32_t> texels = sample_places(static_cast<uint32_t>(seen.direct_over_pi.size()));
   struct Difference {
-    double ao, direct, first;
+    double ao, direct, first, light_variance;
   };
   std::vector<Difference> differences(texels.size());
   parallel_for(texels.size(), 16, [&](size_t begin, size_t end) {
@@ -49,37 +86,28 @@ Noise trace_again(const Tracer& again, const Visibility& seen, const Bounces& bo
     for (size_t i = begin; i < end; ++i) {
       const uint32_t texel = texels[i];
       again.trace_texel(texel, true, row, counts);
-      double first = 0;
-      for (const Link& link : row.links)
-        first += static_cast<double>(link.weight) * static_cast<double>(seen.patch_direct()[link.patch]);
+      double first = 0, light_variance = 0;
+      for (const Link& link : row.links) {
+        const double weight = static_cast<double>(link.weight);
+        const double direct = static_cast<double>(seen.patch_direct()[link.patch]);
+        first += weight * direct;
+        light_variance +=
+            weight * weight * binomial(direct) * nodes.per_binomial[node_kind(again.patches(), link.patch)];
+      }
       differences[i] = {row.visible_fraction - static_cast<double>(seen.visible_fraction[texel]),
                         row.direct_over_pi - static_cast<double>(seen.direct_over_pi[texel]),
-                        first - static_cast<double>(bounces.irradiance[1][texel]) / kPi};
+                        first - static_cast<double>(bounces.irradiance[1][texel]) / kPi, light_variance};
     }
   });
   Noise noise;
   for (const Difference& d : differences) {
     noise.ao.add(d.ao * d.ao);
     noise.direct.add(d.direct * d.direct);
-    noise.first.add(d.first * d.first);
+    noise.first.add(d.first * d.first + 2 * d.light_variance);
     noise.ao_direct.add(d.ao * d.direct / 2);
     noise.ao_first.add(d.ao * d.first / 2);
   }
   return noise;
-}
-
-// Variance of the direct light of a node.
-double node_variance(const Tracer& again, const Visibility& seen) {
-  const std::vector<uint32_t> nodes = sample_places(again.patches().count);
-  Moments squares;
-  Row row;
-  TracerCounts counts;
-  for (const uint32_t node : nodes) {
-    again.trace_patch(node, false, row, counts);
-    const double difference = row.direct_over_pi - static_cast<double>(seen.patch_direct()[node]);
-    squares.add(difference * difference);
-  }
-  return squares.mean / 2;
 }
 
 // The light of a set of nodes as every other node of each facet tells it: the others get the mean of the two
@@ -107,24 +135,37 @@ void tell_by_every_other_node(const PatchSet& patches, std::vector<double>& ligh
   });
 }
 
-// Means over the texels of E₁ and of the total at albedo ½, with what `change` does to the light of the
-// patches before it is gathered.
+// Means over the texels of E₁ and of the first bounces at albedo ½ added up.
 struct MeanLight {
   double first = 0, half = 0;
 };
 
-MeanLight mean_light(const Visibility& seen, const std::function<void(std::vector<double>&)>& change) {
+MeanLight mean_light(const Bounces& bounces) {
+  MeanLight result;
+  double power = 0.5;
+  for (size_t bounce = 1; bounce < bounces.irradiance.size() && bounce <= kHalfBounces;
+       ++bounce, power /= 2) {
+    const double light = mean(std::span<const float>(bounces.irradiance[bounce].values)) / kPi;
+    if (bounce == 1) result.first = light;
+    result.half += power * light;
+  }
+  return result;
+}
+
+// The same `bounces` times with light told by every other node.
+MeanLight mean_coarse_light(const PatchSet& patches, const Visibility& seen, size_t bounces) {
   std::vector<double> light(seen.patch_direct().begin(), seen.patch_direct().end()), next(light.size()),
       sum(light.size()), texels(seen.direct_over_pi.size());
   double power = 0.5;
   MeanLight result;
-  for (int bounce = 1; bounce <= kHalfBounces; ++bounce, power /= 2) {
-    change(light);
+  for (size_t bounce = 1; bounce <= bounces; ++bounce, power /= 2) {
+    tell_by_every_other_node(patches, light);
     for (size_t i = 0; i < light.size(); ++i) sum[i] += power * light[i];
     if (bounce == 1) {
       gather(seen.gather, light, texels);
       result.first = mean(std::span<const double>(texels));
     }
+    if (bounce == bounces) break;
     gather(seen.patch_links(), light, next);
     light.swap(next);
   }
@@ -160,21 +201,22 @@ double curve_error(const Grid<float>& ao, const Grid<float>& irradiance, double 
 
 ErrorEstimate estimate_errors(const Tracer& again, const Visibility& seen, const Bounces& bounces) {
   ErrorEstimate errors;
-  const Noise noise = trace_again(again, seen, bounces);
+  const NodeNoise nodes = node_noise(again, seen);
+  const Noise noise = trace_again(again, seen, bounces, nodes);
   errors.ao_rays = deviation(noise.ao);
   errors.direct_rays = deviation(noise.direct);
   errors.first_rays = deviation(noise.first);
   const double texels = static_cast<double>(seen.direct_over_pi.size());
   errors.mean_direct_rays = errors.direct_rays / std::sqrt(texels);
-  // A texel's row and the light it gathers, as if all nodes were seen alike.
+  // The texels' rows and the light they gather, as if all nodes were seen alike.
   const double blocked = 1 - mean(std::span<const float>(seen.direct_over_pi.values));
   errors.mean_first_rays = std::sqrt(errors.first_rays * errors.first_rays / texels +
-                                     blocked * blocked * node_variance(again, seen) / again.patches().count);
+                                     blocked * blocked * nodes.mean_variance / again.patches().count);
 
   if (again.patches().kind == Patches::kFacets) {
-    const MeanLight all = mean_light(seen, [](std::vector<double>&) {});
-    const MeanLight coarse = mean_light(
-        seen, [&](std::vector<double>& light) { tell_by_every_other_node(again.patches(), light); });
+    const MeanLight all = mean_light(bounces);
+    const MeanLight coarse =
+        mean_coarse_light(again.patches(), seen, std::min(kHalfBounces, bounces.irradiance.size() - 1));
     errors.first_patches = std::abs(coarse.first - all.first) / 3;
     errors.half_patches = std::abs(coarse.half - all.half) / 3;
   }
