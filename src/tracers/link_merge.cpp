@@ -1,6 +1,7 @@
 #include "tracers/link_merge.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -20,10 +21,9 @@ void add_link(const Surface& surface, int x, int y, double weight, std::vector<L
 
 constexpr uint32_t kFree = 0xffffffff;
 
-// Texels: a hit nearer than this is drawn kNearDraws times. It is the distance of the nodes of a long facet;
-// in a deep fold most rays hit nearer.
+// Texels: a hit nearer than this is linked to all nodes around it. It is the distance of the nodes of a long
+// facet; in a deep fold most rays hit nearer.
 constexpr double kNear = 0.25;
-constexpr int kNearDraws = 4;
 
 // Leaves each patch once, in order of its first link, weights summed in double in the order of the links. A
 // hash table of the patches met so far: most rays of a row meet a patch that another one met, and sorting
@@ -50,6 +50,31 @@ void sum_equal_patches(std::vector<Link>& links) {
   for (size_t i = 0; i < sums.size(); ++i) links[i].weight = static_cast<float>(sums[i]);
 }
 
+// So few links are sorted faster one by one, each into its place among those before it.
+constexpr size_t kFewLinks = 32;
+
+void combine_few(std::vector<Link>& links) {
+  struct Sum {
+    uint32_t patch;
+    double weight;
+  };
+  std::array<Sum, kFewLinks> sums;
+  size_t count = 0;
+  for (const Link link : links) {
+    size_t place = count;
+    while (place > 0 && sums[place - 1].patch >= link.patch) --place;
+    if (place < count && sums[place].patch == link.patch) {
+      sums[place].weight += static_cast<double>(link.weight);
+      continue;
+    }
+    std::copy_backward(sums.data() + place, sums.data() + count, sums.data() + count + 1);
+    sums[place] = {link.patch, static_cast<double>(link.weight)};
+    ++count;
+  }
+  links.resize(count);
+  for (size_t i = 0; i < count; ++i) links[i] = {sums[i].patch, static_cast<float>(sums[i].weight)};
+}
+
 }  // namespace
 
 void add_nearest_link(const Surface& surface, glm::dvec2 position, double weight, std::vector<Link>& links) {
@@ -69,13 +94,16 @@ void add_bilinear_links(const Surface& surface, glm::dvec2 position, double weig
 
 void add_node_links(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double distance_texels,
                     double choice, double weight, std::vector<Link>& links) {
-  const int draws = distance_texels < kNear ? kNearDraws : 1;
-  for (int draw = 0; draw < draws; ++draw)
-    links.push_back(
-        {draw_patch(patches, facet, uv, (draw + choice) / draws), static_cast<float>(weight / draws)});
+  if (distance_texels >= kNear) {
+    links.push_back({draw_patch(patches, facet, uv, choice), static_cast<float>(weight)});
+    return;
+  }
+  for (const PatchShare& share : patch_shares(patches, facet, uv))
+    if (share.share > 0) links.push_back({share.patch, static_cast<float>(weight * share.share)});
 }
 
 void combine_links(std::vector<Link>& links) {
+  if (links.size() <= kFewLinks) return combine_few(links);
   sum_equal_patches(links);
   std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.patch < b.patch; });
 }
