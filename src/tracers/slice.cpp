@@ -243,8 +243,9 @@ void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacke
   for (size_t lane = 0; lane < kSliceLanes; ++lane) {
     std::vector<Stretch> near_stretches;
     for (const Stretch& stretch : view.stretches[lane]) {
-      const glm::dvec2 direction =
-          paths.paths[paths.path_index(packet.turn, static_cast<int>(stretch.azimuth))].direction;
+      const SlicePath& path = paths.paths[paths.path_index(packet.turn, static_cast<int>(stretch.azimuth))];
+      const glm::dvec2 direction = path.direction;
+      const glm::dvec2 start = glm::dvec2(packet.x + static_cast<int>(lane), packet.y) + path.origin;
       Stretch near = clip_stretch(surface_, stretch, direction, max_distance_texels_);
       const SliceStretchSums all =
           sums_between(static_cast<double>(stretch.low), static_cast<double>(stretch.high));
@@ -259,7 +260,7 @@ void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacke
       near.weight = static_cast<float>(part.vertical - rim * part.horizontal);
       if (near.weight <= 0) continue;
       near_stretches.push_back(near);
-      append_hits(near, rim, packet.strata_per_weight[lane], view.hits[lane]);
+      append_hits(surface_, near, start, direction, rim, packet.strata_per_weight[lane], view.hits[lane]);
     }
     view.stretches[lane] = std::move(near_stretches);
   }
@@ -288,11 +289,9 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
   for (const SliceHit& hit : view.hits[lane]) {
     // Where a path leaves its own facet at a corner, rounding may leave a little of it.
     if (hit.facet == own_facet) continue;
-    const SlicePath& path = paths.paths[paths.path_index(packet.turn, static_cast<int>(hit.azimuth))];
-    const glm::dvec2 start = glm::dvec2(packet.x + static_cast<int>(lane), packet.y) + path.origin;
     choice = shift_modulo_one(choice, kGoldenStep);
     append_links(surface_, patches_, options_.texel_links, hit, static_cast<double>(hit.weight) / whole,
-                 start, path.direction, choice, row.links);
+                 choice, row.links);
   }
   merge_links(row);
 }
@@ -403,9 +402,7 @@ std::vector<RayRecord> SliceTracer::replay_texel(uint32_t texel) const {
       const double low = static_cast<double>(stretch->low), high = static_cast<double>(stretch->high);
       const SliceStretchSums seen = sums_between(low, high);
       RayRecord record = record_of(low, high, seen);
-      const SliceHit middle{stretch->facet, stretch->weight,           (stretch->low + stretch->high) / 2,
-                            stretch->high,  stretch->inverse_distance, stretch->azimuth};
-      const double distance = hit_distance(surface_, middle, direction);
+      const double distance = stretch_distance(surface_, *stretch, (low + high) / 2, direction);
       const glm::dvec2 place = glm::dvec2(x, y) + distance * direction;
       const glm::dvec2 size(surface_.width(), surface_.height());
       const glm::dvec2 tile = glm::floor((place + 0.5) / size);

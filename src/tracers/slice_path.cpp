@@ -21,12 +21,19 @@ struct LineFamily {
 
   LineFamily(double p, double s, double first_distance) : position(p), speed(s) {
     line = static_cast<int>(s > 0 ? std::floor(p) : std::ceil(p));
-    for (distance = to_line(); distance < first_distance;) advance();
+    for (distance = to_line(); distance < first_distance;) move(1);
   }
   double to_line() const { return std::abs(speed) < kParallel ? HUGE_VAL : (line - position) / speed; }
-  void advance() {
-    line += speed > 0 ? 1 : -1;
+  void move(int lines) {
+    line += speed > 0 ? lines : -lines;
     distance = to_line();
+  }
+  // The line before the next one.
+  LineFamily back() const {
+    LineFamily before = *this;
+    before.move(-1);
+    if (before.distance == HUGE_VAL) before.distance = -HUGE_VAL;
+    return before;
   }
 };
 
@@ -56,43 +63,58 @@ SegmentWindows segment_windows(const SliceField& field, const SlicePath& path, i
   return windows;
 }
 
+glm::dvec2 segment_begin(const SlicePath& path, int segment) {
+  return path.origin + segment * path.step * path.direction - glm::dvec2(window_corner(path, segment, 1));
+}
+
 void append_crossings(const SliceField& field, const SlicePath& path, int segment,
                       std::vector<Crossing>& crossings, std::vector<FacetBefore>& facets) {
   const double near = segment * path.step;
-  const glm::dvec2 d = path.direction;
-  const glm::dvec2 p = path.origin + near * d - glm::dvec2(window_corner(path, segment, 1));
+  const glm::dvec2 d = path.direction, p = segment_begin(path, segment);
   const double first = segment == 0 ? kOverlap : -kOverlap;
   LineFamily columns(p.x, d.x, first), rows(p.y, d.y, first), diagonals(p.x + p.y, d.x + d.y, first);
   const int pitch = static_cast<int>(field.heights.pitch);
 
-  for (bool own_facet = segment == 0 && path.starts_in_facet;; own_facet = false) {
-    const double t = std::min({columns.distance, rows.distance, diagonals.distance});
-    if (!(t <= path.step + kOverlap)) return;
+  // The crossing with the given line of a family, t ahead.
+  const auto append = [&](const LineFamily& family, int line, double t) {
     const double x = p.x + t * d.x, y = p.y + t * d.y;
     // Edges by family: along y, along x, and the diagonal from (i, j + 1) to (i + 1, j).
     int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
-    Crossing crossing;
-    FacetBefore facet;
-    if (t == columns.distance) {
-      i = columns.line;
-      crossing = {j * pitch + i, (j + 1) * pitch + i, static_cast<float>(y - j), 0};
-      facet = {static_cast<int16_t>(d.x > 0 ? i - 1 : i), static_cast<int16_t>(j), d.x > 0};
-      columns.advance();
-    } else if (t == rows.distance) {
-      j = rows.line;
-      crossing = {j * pitch + i, j * pitch + i + 1, static_cast<float>(x - i), 0};
-      facet = {static_cast<int16_t>(i), static_cast<int16_t>(d.y > 0 ? j - 1 : j), d.y > 0};
-      rows.advance();
+    const float inverse = static_cast<float>(1 / (near + t)), along = static_cast<float>(t);
+    if (&family == &columns) {
+      i = line;
+      crossings.push_back({j * pitch + i, (j + 1) * pitch + i, static_cast<float>(y - j), inverse});
+      facets.push_back(
+          {static_cast<int16_t>(d.x > 0 ? i - 1 : i), static_cast<int16_t>(j), d.x > 0, along});
+    } else if (&family == &rows) {
+      j = line;
+      crossings.push_back({j * pitch + i, j * pitch + i + 1, static_cast<float>(x - i), inverse});
+      facets.push_back(
+          {static_cast<int16_t>(i), static_cast<int16_t>(d.y > 0 ? j - 1 : j), d.y > 0, along});
     } else {
-      j = diagonals.line - i - 1;
-      crossing = {(j + 1) * pitch + i, j * pitch + i + 1, static_cast<float>(x - i), 0};
-      facet = {static_cast<int16_t>(i), static_cast<int16_t>(j), d.x + d.y < 0};
-      diagonals.advance();
+      j = line - i - 1;
+      crossings.push_back({(j + 1) * pitch + i, j * pitch + i + 1, static_cast<float>(x - i), inverse});
+      facets.push_back({static_cast<int16_t>(i), static_cast<int16_t>(j), d.x + d.y < 0, along});
     }
-    if (own_facet) continue;
-    crossing.inverse_distance = static_cast<float>(1 / (near + t));
-    crossings.push_back(crossing);
-    facets.push_back(facet);
+  };
+
+  if (segment > 0) {
+    const LineFamily* last = &columns;
+    for (const LineFamily* family : {&rows, &diagonals})
+      if (family->back().distance > last->back().distance) last = family;
+    append(*last, last->back().line, last->back().distance);
+  } else if (!path.starts_in_facet) {
+    const int32_t texel = static_cast<int32_t>(p.y) * pitch + static_cast<int32_t>(p.x);
+    crossings.push_back({texel, texel, 0, HUGE_VALF});
+    facets.push_back({static_cast<int16_t>(p.x), static_cast<int16_t>(p.y), 0, 0});
+  }
+  for (;;) {
+    LineFamily* next = &columns;
+    for (LineFamily* family : {&rows, &diagonals})
+      if (family->distance < next->distance) next = family;
+    if (!(next->distance <= path.step + kOverlap)) return;
+    append(*next, next->line, next->distance);
+    next->move(1);
   }
 }
 

@@ -45,14 +45,12 @@ struct Stretch {
   uint32_t azimuth;
 };
 
-// A piece of facet that a receiver sees at one slope of an azimuth, standing for the slopes around it.
+// A point of a facet that a receiver sees at one slope of an azimuth, standing for the slopes around it.
 struct SliceHit {
   uint32_t facet;
-  float weight;            // ∫ cosine to the receiver's normal, over normal.z, as in SliceSums
-  float slope;             // at which it is seen
-  float high;              // slope of where the path leaves the facet
-  float inverse_distance;  // 1 / horizontal distance of that place, 1/texels
-  uint32_t azimuth;
+  float weight;    // ∫ cosine to the receiver's normal, over normal.z, as in SliceSums
+  float u, v;      // where on the facet (surface/facets.h); to rounding within 0..1
+  float distance;  // along the ray, texels
 };
 
 // What every lane of a packet sees.
