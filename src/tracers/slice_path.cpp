@@ -84,13 +84,11 @@ void append_crossings(const SliceField& field, const SlicePath& path, int segmen
     if (&family == &columns) {
       i = line;
       crossings.push_back({j * pitch + i, (j + 1) * pitch + i, static_cast<float>(y - j), inverse});
-      facets.push_back(
-          {static_cast<int16_t>(d.x > 0 ? i - 1 : i), static_cast<int16_t>(j), d.x > 0, along});
+      facets.push_back({static_cast<int16_t>(d.x > 0 ? i - 1 : i), static_cast<int16_t>(j), d.x > 0, along});
     } else if (&family == &rows) {
       j = line;
       crossings.push_back({j * pitch + i, j * pitch + i + 1, static_cast<float>(x - i), inverse});
-      facets.push_back(
-          {static_cast<int16_t>(i), static_cast<int16_t>(d.y > 0 ? j - 1 : j), d.y > 0, along});
+      facets.push_back({static_cast<int16_t>(i), static_cast<int16_t>(d.y > 0 ? j - 1 : j), d.y > 0, along});
     } else {
       j = line - i - 1;
       crossings.push_back({(j + 1) * pitch + i, j * pitch + i + 1, static_cast<float>(x - i), inverse});

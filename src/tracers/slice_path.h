@@ -54,6 +54,7 @@ void append_crossings(const SliceField& field, const SlicePath& path, int segmen
 // The paths of one family of receivers (texels, or one half of the cells), with their nearest segments ready.
 struct SlicePaths {
   int azimuths = 0;
+  int azimuths_per_linked = 1;          // links are looked for along every n-th azimuth
   int turns = 0;                        // rotations of the azimuths
   int ready_segments = 0;               // per path
   std::vector<SlicePath> paths;         // [turn · azimuths + azimuth]

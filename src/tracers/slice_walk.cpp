@@ -203,8 +203,8 @@ HWY_INLINE V height_at(const Crossing& crossing, const float* heights, size_t pa
   return hn::Add(hn::Sub(a, lanes.base.part[part]), along_edge);
 }
 
-// Calls meet(part, slope, corner, crossing, facet before it) for every crossing of a segment but its first, by
-// distance. The first one's are right before them in memory.
+// Calls meet(part, slope, corner, crossing, facet before it) for every crossing of a segment but its first,
+// by distance. The first one's are right before them in memory.
 template <class Meet>
 HWY_INLINE void PathWalk::cross_segment(const SlicePacket& packet, int segment, const Lanes& lanes,
                                         const Meet& meet) {
@@ -262,7 +262,8 @@ HWY_INLINE void PathWalk::find_stretches(const SlicePacket& packet, uint32_t azi
 HWY_INLINE void PathWalk::find_hits(const SlicePacket& packet, uint32_t azimuth, Lanes& lanes,
                                     PacketView& view) {
   const Vectors shift = load(packet.place), per_weight = load(packet.strata_per_weight);
-  const float turn = static_cast<float>(radical_inverse(2, azimuth));
+  const uint32_t linked = azimuth / static_cast<uint32_t>(options_.azimuths_per_linked);
+  const float turn = static_cast<float>(radical_inverse(2, linked));
   strata_.most = 0;
   for (size_t p = 0; p < kParts; ++p) {
     const V sum = hn::Add(shift.part[p], hn::Set(kF, turn));
@@ -307,40 +308,39 @@ HWY_INLINE void PathWalk::hit_strata(const SlicePacket& packet, int segment, Lan
   const float* heights = field_.heights.at(window.x, window.y);
   cross_segment(
       packet, segment, lanes,
-      [&](size_t p, V slope, const glm::ivec2& corner, const Crossing& crossing, const FacetBefore& facet)
-          HWY_ATTR {
-            auto met = hn::Ge(slope, lanes.slope.part[p]);
-            if (hn::AllFalse(kF, met)) return;
-            const Crossing& entry = (&crossing)[-1];
-            const V entered = hn::Set(kF, (&facet)[-1].along), left = hn::Set(kF, facet.along);
-            // Heights over the start where the path enters the facet and where it leaves it.
-            const V near_height = height_at(entry, heights, p, lanes), near_distance = hn::Add(near, entered);
-            const V far_height = height_at(crossing, heights, p, lanes), far_distance = hn::Add(near, left);
-            do {
-              // How far a ray is above the facet where it enters, and below it where it leaves.
-              const V next = lanes.slope.part[p];
-              const V above = hn::Max(zero, hn::MulSub(next, near_distance, near_height));
-              const V below = hn::Max(hn::Set(kF, 1e-30f), hn::NegMulAdd(next, far_distance, far_height));
-              const V along = hn::MulAdd(hn::Div(above, hn::Add(above, below)), hn::Sub(left, entered), entered);
-              const V distance = hn::Mul(hn::Add(near, along), hn::Sqrt(hn::MulAdd(next, next, one)));
-              alignas(64) float slopes[kWidth], alongs[kWidth], distances[kWidth];
-              hn::Store(next, kF, slopes);
-              hn::Store(along, kF, alongs);
-              hn::Store(distance, kF, distances);
-              for_each_lane(met, [&](size_t l) {
-                const size_t lane = p * kWidth + l;
-                const size_t stratum = next_stratum_[lane]++;
-                const glm::vec2 in_cell =
-                    begin + alongs[l] * direction - glm::vec2(facet.column, facet.row);
-                const glm::vec2 uv = facet.half == 0 ? in_cell : 1.0f - in_cell;
-                view.hits[lane].push_back({facet_at(corner, facet, static_cast<int>(lane)),
-                                           strata_.weight[stratum][lane], uv.x, uv.y, distances[l]});
-                slopes[l] = strata_.slope[stratum + 1][lane];
-              });
-              lanes.slope.part[p] = hn::Load(kF, slopes);
-              met = hn::Ge(slope, lanes.slope.part[p]);
-            } while (!hn::AllFalse(kF, met));
+      [&](size_t p, V slope, const glm::ivec2& corner, const Crossing& crossing,
+          const FacetBefore& facet) HWY_ATTR {
+        auto met = hn::Ge(slope, lanes.slope.part[p]);
+        if (hn::AllFalse(kF, met)) return;
+        const Crossing& entry = (&crossing)[-1];
+        const V entered = hn::Set(kF, (&facet)[-1].along), left = hn::Set(kF, facet.along);
+        // Heights over the start where the path enters the facet and where it leaves it.
+        const V near_height = height_at(entry, heights, p, lanes), near_distance = hn::Add(near, entered);
+        const V far_height = height_at(crossing, heights, p, lanes), far_distance = hn::Add(near, left);
+        do {
+          // How far a ray is above the facet where it enters, and below it where it leaves.
+          const V next = lanes.slope.part[p];
+          const V above = hn::Max(zero, hn::MulSub(next, near_distance, near_height));
+          const V below = hn::Max(hn::Set(kF, 1e-30f), hn::NegMulAdd(next, far_distance, far_height));
+          const V along = hn::MulAdd(hn::Div(above, hn::Add(above, below)), hn::Sub(left, entered), entered);
+          const V distance = hn::Mul(hn::Add(near, along), hn::Sqrt(hn::MulAdd(next, next, one)));
+          alignas(64) float slopes[kWidth], alongs[kWidth], distances[kWidth];
+          hn::Store(next, kF, slopes);
+          hn::Store(along, kF, alongs);
+          hn::Store(distance, kF, distances);
+          for_each_lane(met, [&](size_t l) {
+            const size_t lane = p * kWidth + l;
+            const size_t stratum = next_stratum_[lane]++;
+            const glm::vec2 in_cell = begin + alongs[l] * direction - glm::vec2(facet.column, facet.row);
+            const glm::vec2 uv = facet.half == 0 ? in_cell : 1.0f - in_cell;
+            view.hits[lane].push_back({facet_at(corner, facet, static_cast<int>(lane)),
+                                       strata_.weight[stratum][lane], uv.x, uv.y, distances[l]});
+            slopes[l] = strata_.slope[stratum + 1][lane];
           });
+          lanes.slope.part[p] = hn::Load(kF, slopes);
+          met = hn::Ge(slope, lanes.slope.part[p]);
+        } while (!hn::AllFalse(kF, met));
+      });
 }
 
 HWY_INLINE uint32_t PathWalk::facet_at(glm::ivec2 corner, const FacetBefore& facet, int lane) const {
@@ -375,7 +375,11 @@ void walk_all(const SliceField& field, const SlicePaths& paths, const WalkOption
         turn = packets[index].turn;
         walk.begin_path(paths.path_index(turn, azimuth));
       }
-      walk.walk<kWhat>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
+      if (kWhat == WalkFor::kHits && azimuth % options.azimuths_per_linked != 0) {
+        walk.walk<WalkFor::kSky>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
+      } else {
+        walk.walk<kWhat>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
+      }
     }
   }
 }

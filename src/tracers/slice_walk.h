@@ -62,11 +62,20 @@ struct PacketView {
   LaneArray<uint32_t> cut_short{};
 };
 
+// Keeps the memory of hits and stretches.
+inline void clear(PacketView& view) {
+  view.hemisphere = view.sky = {};
+  view.cut_short = {};
+  for (auto& hits : view.hits) hits.clear();
+  for (auto& stretches : view.stretches) stretches.clear();
+}
+
 // What a walk is for, besides the sky: a sample of what is seen below the horizon, or all of it.
 enum class WalkFor { kSky, kHits, kStretches };
 
 struct WalkOptions {
   WalkFor what = WalkFor::kSky;
+  int azimuths_per_linked = 1;  // hits are sampled along every n-th azimuth only
   double max_distance =
       std::numeric_limits<double>::infinity();  // horizontal, texels: no need to go on beyond
 };
