@@ -23,10 +23,10 @@ constexpr uint64_t kTexelTurn = 0x511ce01, kNodeTurn = 0x511ce03, kTexelPlace = 
 
 // Samples for links of a slice that holds the mean share of its receiver's hemisphere. Nodes take fewer: what
 // a texel gathers averages over many of them.
-constexpr int kTexelStrata = kStrataPerSlice, kNodeStrata = kStrataPerSlice / 3;
+constexpr int kTexelStrata = kStrataPerSlice, kNodeStrata = kStrataPerSlice / 2;
 
 // Packets walked together: with links, what they meet stays in the cache.
-constexpr size_t kPacketsTogether = 64, kPacketsWithLinks = 16;
+constexpr size_t kPacketsTogether = 64, kTexelPacketsWithLinks = 16;
 
 // Less than this share of the hemisphere blocked counts as none.
 constexpr double kLeastBlocked = 1e-6;
@@ -268,7 +268,7 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
 void SliceTracer::answer(const SlicePaths& paths, bool of_nodes, bool with_links,
                          std::span<const AskedPacket> asked, uint32_t first, RowPlaces places,
                          std::span<Row> rows, TracerCounts& counts) const {
-  const size_t together = with_links ? kPacketsWithLinks : kPacketsTogether;
+  const size_t together = with_links && !of_nodes ? kTexelPacketsWithLinks : kPacketsTogether;
   for (size_t begin = 0; begin < asked.size(); begin += together) {
     const auto piece = asked.subspan(begin, std::min(together, asked.size() - begin));
     std::vector<SlicePacket> packets;

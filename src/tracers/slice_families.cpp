@@ -26,7 +26,7 @@ constexpr int kNodeAzimuthsPerLinked = 3;
 // Azimuths along which a node looks for links: five at least, or some in a deep fold would only meet each
 // other and keep their light for ever; odd, as three times as many are, since an odd number also integrates
 // the cosine weight of a tilted facet well (its odd harmonics above the first vanish).
-int linked_azimuths_of_node(int azimuths) { return std::max(5, azimuths / 10 | 1); }
+int linked_azimuths_of_node(int azimuths) { return std::max(5, azimuths / 16 | 1); }
 
 // Where in its share of the circle a turn begins, 0..1: at random, but nowhere near an eighth, so that no
 // path runs exactly along the grid or a diagonal. On a wrapping map such a path meets the same few texels for

@@ -16,7 +16,7 @@ template <class T>
 using LaneArray = std::array<T, kSliceLanes>;
 
 // Most samples for links of a slice that holds the mean share of its receiver's hemisphere.
-inline constexpr int kStrataPerSlice = 12;
+inline constexpr int kStrataPerSlice = 8;
 
 // Receivers side by side: lane l starts in the cell (x + l, y).
 struct SlicePacket {
