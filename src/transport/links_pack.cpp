@@ -22,22 +22,22 @@ double weight_of(const Link& link) { return std::max(0.0, static_cast<double>(li
 // The smallest whole multiples of one unit that all weights are, within what rounding to float leaves of
 // them; their sum, or 0 where there is no such unit.
 uint64_t whole_multiples(std::span<const Link> row, double least, std::span<uint32_t> multiples) {
-  // Rays that count alike make far less.
-  constexpr double kMostMultiple = 4096;
   // Rounding makes a mean of at most kMostFineness: the least multiple is no larger unless more than half of
   // the links were lost to it.
   constexpr int kMostParts = 2 * static_cast<int>(kMostFineness);
+  // A finer unit than rounding would take, at the most: with cosines for weights there is one, but far finer.
+  const double most_multiple = kMostParts * static_cast<double>(row.size());
   for (int parts = 1; parts <= kMostParts; ++parts) {
     uint64_t total = 0;
     size_t i = 0;
     for (; i < row.size(); ++i) {
       const double exact = weight_of(row[i]) * (parts / least);
-      if (exact > kMostMultiple) break;
+      if (exact > most_multiple) break;
       multiples[i] = static_cast<uint32_t>(exact + 0.5);
       if (std::abs(exact - multiples[i]) > 1e-4 + 1e-6 * exact) break;
       total += multiples[i];
     }
-    if (i == row.size()) return total;
+    if (i == row.size() && static_cast<double>(total) <= most_multiple) return total;
   }
   return 0;
 }
