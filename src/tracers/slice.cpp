@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <optional>
 
 #include "sampling/low_discrepancy.h"
 #include "tracers/link_merge.h"
@@ -28,8 +29,8 @@ constexpr int kTexelStrata = kStrataPerSlice, kNodeStrata = kStrataPerSlice / 2;
 // Packets walked together: with links, what they meet stays in the cache.
 constexpr size_t kPacketsTogether = 64, kTexelPacketsWithLinks = 16;
 
-// Less than this share of the hemisphere blocked counts as none.
-constexpr double kLeastBlocked = 1e-6;
+// Less than this share of the hemisphere blocked counts as none: as little as a horizon may be off by.
+constexpr double kLeastBlocked = 1e-4;
 
 constexpr uint32_t kNoFacet = 0xffffffff;
 
@@ -191,13 +192,14 @@ void SliceTracer::find_missed_hits(const SlicePaths& paths, const SlicePacket& p
     return view.hits[lane].empty() &&
            view.sky.uniform[lane] < (1 - kLeastBlocked) * view.hemisphere.uniform[lane];
   };
-  PacketView again;
+  std::optional<PacketView> again;
   for (size_t lane = 0; lane < static_cast<size_t>(packet.lanes); ++lane) {
     if (!missed(lane)) continue;
-    if (again.hits[lane].empty()) {
-      walk_packets(field_, paths, {WalkFor::kHits, 1, max_distance_texels_}, {&packet, 1}, {&again, 1});
+    if (!again) {
+      again.emplace();
+      walk_packets(field_, paths, {WalkFor::kHits, 1, max_distance_texels_}, {&packet, 1}, {&*again, 1});
     }
-    view.hits[lane] = again.hits[lane];
+    view.hits[lane] = again->hits[lane];
   }
 }
 

@@ -66,7 +66,7 @@ TEST(SliceSame, NodesThatSeeOnePillarLinkToIt) {
   for (uint32_t patch = 0; patch < tracer->patches().count; patch += 5) {
     tracer->trace_patch(patch, true, with, counts);
     tracer->trace_patch(patch, false, without, counts);
-    EXPECT_NEAR(with.direct_over_pi, without.direct_over_pi, 1e-6) << patch;
+    EXPECT_NEAR(with.direct_over_pi, without.direct_over_pi, 1e-4) << patch;
     EXPECT_EQ(with.links.empty(), with.direct_over_pi == 1) << patch;
     if (!with.links.empty()) ++blocked;
   }
