@@ -129,7 +129,7 @@ void write_matrix(hid_t file, const char* name, const Links& links) {
 void check_rows(const Links& links, const std::string& name) {
   expect_equal(links.blocks.size(), make_links(links.rows, 0).blocks.size(), "blocks of " + name);
   uint64_t rows = 0;
-  for (const LinkBlock& block : links.blocks) rows += block.row_count();
+  for (const LinkBlock& block : links.blocks) rows += block.rows;
   expect_equal(rows, uint64_t{links.rows}, "rows of " + name);
 }
 

@@ -1,10 +1,12 @@
-// The product of packed links and values, vector by vector: a group's weights are spread to the columns that
-// they belong to and multiplied with the group's values as they lie in memory; nothing is fetched one by one.
+// The product of packed links and values: a vector takes a link of each of sixteen rows at once, so that
+// decoding and sums need no exchange between lanes.
+#include <sys/mman.h>
+
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cstdint>
-#include <vector>
+#include <cstdlib>
+#include <memory>
+#include <new>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -15,127 +17,112 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#ifndef HEMIBAKE_LINKS_GATHER_ONCE
-#define HEMIBAKE_LINKS_GATHER_ONCE
-namespace hemibake {
-
-constexpr size_t kLanes = LinkBlock::kColumnsPerGroup;
-
-// For every set of columns, the bytes of 8 packed weights that go to each of the 8 columns; those of columns
-// without a link are zero, for which TableLookupBytesOr0 wants the top bit.
-using SpreadTable = std::array<std::array<uint8_t, 2 * kLanes>, 256>;
-
-constexpr SpreadTable make_spread_table() {
-  SpreadTable table{};
-  for (uint32_t columns = 0; columns < 256; ++columns) {
-    uint8_t from = 0;
-    for (uint32_t column = 0; column < kLanes; ++column) {
-      const bool linked = columns >> column & 1;
-      table[columns][2 * column] = linked ? from++ : uint8_t{0x80};
-      table[columns][2 * column + 1] = linked ? from++ : uint8_t{0x80};
-    }
-  }
-  return table;
-}
-
-alignas(16) inline constexpr SpreadTable kSpread = make_spread_table();
-
-}  // namespace hemibake
-#endif
-
 HWY_BEFORE_NAMESPACE();
 namespace hemibake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+constexpr uint32_t kTurn = LinkBlock::kRowsInTurn;
+
 #if HWY_TARGET == HWY_SCALAR
 
-// A machine without vectors: the same, a column at a time.
-void gather_block(const BlockView& block, const double* HWY_RESTRICT values, double* HWY_RESTRICT out) {
-  const uint16_t* HWY_RESTRICT code = block.codes;
-  const uint16_t* HWY_RESTRICT weight = block.weights;
-  for (size_t row = 0; row < block.rows.size(); ++row) {
-    double sum = 0;
-    const double* at = values + size_t{first_group(block.rows[row], block.anchor)} * kLanes;
-    for (; *code != 0; ++code) {
-      at += groups_ahead(*code) * kLanes;
-      for (uint32_t columns = *code >> 8; columns != 0; columns &= columns - 1)
-        sum += *weight++ * at[std::countr_zero(columns)];
+// A machine without vectors: the same, a link at a time.
+void gather_block(const BlockView& block, const float* HWY_RESTRICT values, double* HWY_RESTRICT out) {
+  const uint8_t* HWY_RESTRICT link = block.links;
+  const uint32_t weight_mask = (1u << block.weight_bits) - 1;
+  for (uint32_t first = 0; first < block.rows; first += kTurn) {
+    uint32_t column[kTurn] = {};
+    double sum[kTurn] = {};
+    const uint32_t places = std::min(kTurn, block.rows - first);
+    for (uint32_t i = 0; i < places; ++i)
+      column[i] = block.base + (uint32_t{block.start[first + i]} << block.start_shift);
+    for (uint32_t k = 0; block.rows_as_long[k] > first; ++k) {
+      const uint32_t turn = std::min(kTurn, block.rows_as_long[k] - first);
+      for (uint32_t i = 0; i < turn; ++i) {
+        const uint32_t code = link[2 * i] | link[2 * i + 1] << 8 | link[2 * turn + i] << 16;
+        column[i] += code >> block.weight_bits;
+        sum[i] += static_cast<double>(code & weight_mask) * static_cast<double>(values[column[i]]);
+      }
+      link += turn * LinkBlock::kLinkBytes;
     }
-    ++code;
-    out[row] = sum * quantum_of(block.rows[row]);
+    for (uint32_t i = 0; i < places; ++i) out[block.row[first + i]] = sum[i] * block.quantum(first + i);
   }
 }
 
 #else
 
-using F = hn::CappedTag<double, kLanes>;
+using F = hn::CappedTag<float, kTurn>;
 constexpr F kF;
+constexpr hn::RebindToUnsigned<F> kU;
+constexpr hn::RebindToSigned<F> kI;
+constexpr hn::Half<F> kHalfF;
+constexpr hn::Half<hn::RebindToSigned<F> > kHalfI;
+constexpr hn::Repartition<double, F> kD;
+constexpr hn::Rebind<uint16_t, F> kLow;
+constexpr hn::Rebind<uint8_t, F> kHigh;
 constexpr size_t kWidth = hn::MaxLanes(F());
-constexpr size_t kParts = kLanes / kWidth;
-constexpr hn::FixedTag<uint16_t, kLanes> kWeights;
-constexpr hn::FixedTag<uint8_t, 2 * kLanes> kBytes;
-using Weights = hn::Vec<hn::FixedTag<uint16_t, kLanes> >;
+constexpr size_t kParts = kTurn / kWidth;
+using U = hn::Vec<hn::RebindToUnsigned<F> >;
+using D = hn::Vec<hn::Repartition<double, F> >;
 
-// The first kCount lanes.
-template <size_t kCount>
-HWY_INLINE auto first_lanes(Weights weights) {
-  if constexpr (kCount == kLanes) {
-    return weights;
-  } else {
-    constexpr hn::FixedTag<uint16_t, 4> kHalf;
-    const auto half = hn::LowerHalf(kHalf, weights);
-    if constexpr (kCount == 4) return half;
-    if constexpr (kCount == 2) return hn::LowerHalf(hn::Half<hn::FixedTag<uint16_t, 4> >(), half);
-  }
-}
-
-// Weights of the lanes from kPart · kWidth on.
-template <size_t kPart>
-HWY_INLINE hn::Vec<F> weights_of_part(Weights weights) {
-  constexpr hn::Rebind<int32_t, F> kWhole;
-  const auto shifted = hn::ShiftRightBytes<static_cast<int>(kPart * kWidth * 2)>(kWeights, weights);
-  return hn::PromoteTo(kF, hn::PromoteTo(kWhole, first_lanes<kWidth>(shifted)));
-}
-
-struct Sums {
-  hn::Vec<F> part[kParts];
+// Some of the rows that take turns.
+struct Part {
+  U column;
+  D low, high;  // sums
 };
 
-template <size_t kPart = 0>
-HWY_INLINE void add_group(Weights weights, const double* HWY_RESTRICT values, Sums& sums) {
-  sums.part[kPart] =
-      hn::MulAdd(weights_of_part<kPart>(weights), hn::LoadU(kF, values + kPart * kWidth), sums.part[kPart]);
-  if constexpr (kPart + 1 < kParts) add_group<kPart + 1>(weights, values, sums);
-}
+struct Decoder {
+  U weight_mask;
+  int weight_bits;
+  const float* HWY_RESTRICT values;
 
-HWY_INLINE double total_of(const Sums& sums, const Sums& others) {
-  hn::Vec<F> total = hn::Add(sums.part[0], others.part[0]);
-  for (size_t p = 1; p < kParts; ++p) total = hn::Add(total, hn::Add(sums.part[p], others.part[p]));
-  return hn::GetLane(hn::SumOfLanes(kF, total));
-}
-
-void gather_block(const BlockView& block, const double* HWY_RESTRICT values, double* HWY_RESTRICT out) {
-  const uint16_t* HWY_RESTRICT code = block.codes;
-  const uint16_t* HWY_RESTRICT weight = block.weights;
-  for (size_t row = 0; row < block.rows.size(); ++row) {
-    Sums sums, others;  // two chains of additions, taken in turn
-    for (size_t p = 0; p < kParts; ++p) sums.part[p] = others.part[p] = hn::Zero(kF);
-    const double* HWY_RESTRICT at = values + size_t{first_group(block.rows[row], block.anchor)} * kLanes;
-    for (; *code != 0; ++code) {
-      const uint32_t columns = *code >> 8;
-      at += groups_ahead(*code) * kLanes;
-      const auto packed = hn::BitCast(kBytes, hn::LoadU(kWeights, weight));
-      const auto spread = hn::TableLookupBytesOr0(packed, hn::Load(kBytes, kSpread[columns].data()));
-      weight += std::popcount(columns);
-      const Sums last = sums;
-      add_group(hn::BitCast(kWeights, spread), at, others);
-      sums = others;
-      others = last;
-    }
-    ++code;
-    out[row] = total_of(sums, others) * quantum_of(block.rows[row]);
+  // The next link of each row: `links` from this part's low 16 bits on, the high ones at `high`; `lanes` of
+  // them are there.
+  HWY_INLINE void add_links(const uint8_t* low, const uint8_t* high, size_t lanes, Part& part) const {
+    const auto upper = hn::PromoteTo(kU, hn::PromoteTo(kLow, hn::LoadU(kHigh, high)));
+    const auto lower = hn::PromoteTo(kU, hn::LoadU(kLow, reinterpret_cast<const uint16_t*>(low)));
+    const U code = hn::IfThenElseZero(hn::FirstN(kU, lanes), hn::Or(lower, hn::ShiftLeft<16>(upper)));
+    part.column = hn::Add(part.column, hn::ShiftRightSame(code, weight_bits));
+    const auto weight = hn::BitCast(kI, hn::And(code, weight_mask));
+    const auto light = hn::GatherIndex(kF, values, hn::BitCast(kI, part.column));
+    part.low = hn::MulAdd(hn::PromoteTo(kD, hn::LowerHalf(kHalfI, weight)),
+                          hn::PromoteTo(kD, hn::LowerHalf(kHalfF, light)), part.low);
+    part.high = hn::MulAdd(hn::PromoteTo(kD, hn::UpperHalf(kHalfI, weight)),
+                           hn::PromoteTo(kD, hn::UpperHalf(kHalfF, light)), part.high);
   }
+};
+
+HWY_INLINE size_t lanes_from(size_t lane, size_t count) { return count > lane ? count - lane : 0; }
+
+void gather_block(const BlockView& block, const float* HWY_RESTRICT values, double* HWY_RESTRICT out) {
+  const Decoder decoder{hn::Set(kU, (1u << block.weight_bits) - 1), static_cast<int>(block.weight_bits),
+                        values};
+  const uint8_t* HWY_RESTRICT link = block.links;
+  HWY_ALIGN double sums[Links::kRowsPerBlock];
+  for (uint32_t first = 0; first < block.rows; first += kTurn) {
+    Part parts[kParts];
+    for (size_t p = 0; p < kParts; ++p) {
+      // Lanes without a row stay at the block's base.
+      const auto bytes = hn::LoadU(kHigh, block.start + first + p * kWidth);
+      const U start = hn::IfThenElseZero(hn::FirstN(kU, lanes_from(first + p * kWidth, block.rows)),
+                                         hn::PromoteTo(kU, hn::PromoteTo(kLow, bytes)));
+      parts[p].column =
+          hn::Add(hn::Set(kU, block.base), hn::ShiftLeftSame(start, static_cast<int>(block.start_shift)));
+      parts[p].low = parts[p].high = hn::Zero(kD);
+    }
+    for (const uint16_t* HWY_RESTRICT as_long = block.rows_as_long; *as_long > first; ++as_long) {
+      const size_t turn = std::min<size_t>(kTurn, *as_long - first);
+      for (size_t p = 0; p < kParts && p * kWidth < turn; ++p)
+        decoder.add_links(link + 2 * p * kWidth, link + 2 * turn + p * kWidth, turn - p * kWidth, parts[p]);
+      link += turn * LinkBlock::kLinkBytes;
+    }
+    for (size_t p = 0; p < kParts; ++p) {
+      hn::Store(parts[p].low, kD, sums + first + p * kWidth);
+      hn::Store(parts[p].high, kD, sums + first + p * kWidth + kWidth / 2);
+    }
+  }
+  for (uint32_t place = 0; place < block.rows; ++place)
+    out[block.row[place]] = sums[place] * block.quantum(place);
 }
 
 #endif
@@ -149,20 +136,42 @@ namespace hemibake {
 
 HWY_EXPORT(gather_block);
 
+namespace {
+
+constexpr size_t kGrain = 16384;
+// Blocks taken together: a block alone is some microseconds of work.
+constexpr size_t kBlocksPerTask = 8;
+
+struct Free {
+  void operator()(float* memory) const { std::free(memory); }
+};
+
+// Values as float, in few large pages where the system has them: links lead all over the values, and a page
+// for every 4 KiB of them would be looked up for almost every link.
+std::unique_ptr<float[], Free> as_float(std::span<const double> values) {
+  constexpr size_t kLargePage = size_t{2} << 20;
+  const size_t wanted = std::max<size_t>(1, values.size()) * sizeof(float);
+  const size_t bytes = wanted < kLargePage ? wanted : (wanted + kLargePage - 1) / kLargePage * kLargePage;
+  std::unique_ptr<float[], Free> rounded(
+      static_cast<float*>(bytes < kLargePage ? std::malloc(bytes) : std::aligned_alloc(kLargePage, bytes)));
+  if (!rounded) throw std::bad_alloc();
+  if (bytes >= kLargePage) madvise(rounded.get(), bytes, MADV_HUGEPAGE);
+  parallel_for(values.size(), kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) rounded[i] = static_cast<float>(values[i]);
+  });
+  return rounded;
+}
+
+}  // namespace
+
 void gather(const Links& links, std::span<const double> values, std::span<double> out) {
   expect_equal(values.size(), size_t{links.columns}, "values given to gather");
   expect_equal(out.size(), size_t{links.rows}, "results asked of gather");
-  // Groups are read whole.
-  std::vector<double> padded;
-  if (values.size() % kLanes != 0) {
-    padded.assign(values.begin(), values.end());
-    padded.resize((values.size() + kLanes - 1) / kLanes * kLanes);
-    values = padded;
-  }
-  parallel_for(links.blocks.size(), 1, [&](size_t first, size_t last) {
+  const auto rounded = as_float(values);
+  parallel_for(links.blocks.size(), kBlocksPerTask, [&](size_t first, size_t last) {
     for (size_t b = first; b < last; ++b) {
       HWY_DYNAMIC_DISPATCH(gather_block)
-      (view_block(links.blocks[b]), values.data(), out.data() + b * Links::kRowsPerBlock);
+      (view_block(links.blocks[b]), rounded.get(), out.data() + b * Links::kRowsPerBlock);
       close_view(links.blocks[b]);
     }
   });

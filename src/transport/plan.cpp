@@ -19,7 +19,8 @@ constexpr uint64_t kPilotStream = 100;
 constexpr double kSecondsPerLink = 2e-9;
 
 struct Pilot {
-  Moments links, link_bytes;  // of a row
+  Moments links;              // of a row
+  double bytes_per_link = 0;  // all in
   uint64_t rays = 0;
   double cpu_seconds = 0;
 };
@@ -30,20 +31,20 @@ template <class TraceRow>
 Pilot trace_pilot(uint32_t count, uint32_t columns, const TraceRow& trace_row) {
   Pilot pilot;
   Row row;
-  Links links = make_links(count, columns);
   TracerCounts counts;
   const uint32_t rows = std::min(count, kPilotRows);
+  Links links = make_links(rows, columns);
   const double start = process_cpu_seconds();
   for (uint32_t i = 0; i < rows; ++i) {
     const double place = (i + unit_interval(mix_bits(0, kPilotStream, i))) / rows;
     const uint32_t receiver = std::min(count - 1, static_cast<uint32_t>(place * count));
     trace_row(receiver, row, counts);
-    LinkBlock& block = links.blocks[receiver / Links::kRowsPerBlock];
-    const size_t bytes_before = stored_bytes(block), links_before = block.link_count();
-    append_row(block, row.links);
-    pilot.links.add(static_cast<double>(block.link_count() - links_before));
-    pilot.link_bytes.add(static_cast<double>(stored_bytes(block) - bytes_before));
+    append_row(links.blocks[i / Links::kRowsPerBlock], row.links);
+    pilot.links.add(static_cast<double>(row.links.size()));
   }
+  finish_blocks(links);
+  if (pilot.links.mean > 0)
+    pilot.bytes_per_link = static_cast<double>(links.stored_bytes()) / (pilot.links.mean * rows);
   pilot.cpu_seconds = process_cpu_seconds() - start;
   pilot.rays = counts.rays;
   return pilot;
@@ -51,10 +52,10 @@ Pilot trace_pilot(uint32_t count, uint32_t columns, const TraceRow& trace_row) {
 
 void add_pilot(const Pilot& pilot, uint32_t count, BakePlan& plan) {
   const double rows = static_cast<double>(pilot.links.count), scale = count / rows;
-  const double error = 4 * pilot.link_bytes.stddev() / std::sqrt(rows);
+  const double error = 4 * pilot.links.stddev() / std::sqrt(rows);
   plan.rays += static_cast<uint64_t>(std::llround(static_cast<double>(pilot.rays) * scale));
   plan.links += static_cast<uint64_t>(std::llround(pilot.links.mean * count));
-  plan.link_bytes += static_cast<size_t>((pilot.link_bytes.mean + error) * count);
+  plan.link_bytes += static_cast<size_t>((pilot.links.mean + error) * pilot.bytes_per_link * count);
   plan.trace_cpu_seconds += pilot.cpu_seconds * scale;
 }
 

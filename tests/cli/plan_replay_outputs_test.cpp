@@ -51,7 +51,7 @@ TEST_F(Plan, LinksThatDoNotFitGoToAFile) {
                   spilled_links = read_links(folder_ / "spilled.h5");
   ASSERT_EQ(kept_links.patches->blocks.size(), spilled_links.patches->blocks.size());
   for (size_t b = 0; b < kept_links.patches->blocks.size(); ++b)
-    EXPECT_EQ(kept_links.patches->blocks[b].weights, spilled_links.patches->blocks[b].weights);
+    EXPECT_EQ(kept_links.patches->blocks[b].packed, spilled_links.patches->blocks[b].packed);
   EXPECT_EQ(listing().size(), 5u);  // the map and four outputs
 }
 

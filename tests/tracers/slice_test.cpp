@@ -205,16 +205,16 @@ TEST(SliceTracer, SameBytesFromAnyNumberOfThreadsAndOneByOne) {
   TracerCounts counts;
   BlockRows stored;
   for (size_t b = 0; b < one.patches.blocks.size(); ++b) {
-    EXPECT_EQ(one.patches.blocks[b].codes, two.patches.blocks[b].codes);
-    EXPECT_EQ(one.patches.blocks[b].weights, two.patches.blocks[b].weights);
+    EXPECT_EQ(one.patches.blocks[b].packed, two.patches.blocks[b].packed);
   }
   for (uint32_t facet = 0; facet < tracer->patches().count; facet += 13) {
     tracer->trace_patch(facet, true, row, counts);
     unpack_block(one.patches.blocks[facet / Links::kRowsPerBlock], stored);
-    float largest = 0;
-    for (const Link& link : row.links) largest = std::max(largest, link.weight);
-    // Packing takes less than a 65535th of the largest, and the links that this leaves nothing of.
-    const float quantum = 1.0001f * largest / 65535;
+    float sum = 0;
+    for (const Link& link : row.links) sum += link.weight;
+    // Packing takes less than a quantum of a weight (transport/links.h), and the links that this leaves
+    // nothing of.
+    const float quantum = 1.0001f * sum / (12 * static_cast<float>(row.links.size()));
     uint32_t at = stored.row_begin[facet % Links::kRowsPerBlock];
     for (const Link& link : row.links) {
       const bool kept =

@@ -21,6 +21,7 @@ Visibility two_texels(float c) {
   seen.direct_over_pi = Grid<float>(2, 1, c);
   seen.gather = make_links(2, 2);
   for (uint32_t i = 0; i < 2; ++i) append_row(seen.gather.blocks[0], std::vector<Link>{{1 - i, 1 - c}});
+  finish_blocks(seen.gather);
   return seen;
 }
 
@@ -51,6 +52,7 @@ TEST(Bounces, TheCapEndsItAndNamesWhatIsShort) {
   seen.gather = make_links(2, 2);
   append_row(seen.gather.blocks[0], std::vector<Link>{{1, 0.75f}});
   append_row(seen.gather.blocks[0], std::vector<Link>{{1, 1.0f}});  // sees only itself
+  finish_blocks(seen.gather);
   BounceOptions options;
   options.converge_tolerance = 1e-6;
   options.max_bounces = 50;

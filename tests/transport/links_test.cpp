@@ -24,6 +24,7 @@ Links ring(uint32_t rows) {
     const uint32_t next = (i + 1) % rows;
     append_row(links.blocks[i / Links::kRowsPerBlock], std::vector<Link>{{next, 0.25f}, {rows, 0.5f}});
   }
+  finish_blocks(links);
   return links;
 }
 
@@ -45,6 +46,7 @@ std::vector<Link> pack_and_unpack(const std::vector<Link>& row, uint32_t columns
   for (uint32_t i = 0; i < rows; ++i)
     append_row(links.blocks[i / Links::kRowsPerBlock],
                i == rows - 2 ? row : std::vector<Link>{{columns - 1, 0.5f}});
+  finish_blocks(links);
   BlockRows stored;
   unpack_block(links.blocks.back(), stored);
   const uint32_t at = (rows - 2) % Links::kRowsPerBlock;
@@ -60,13 +62,13 @@ std::vector<Link> pack_and_unpack(const std::vector<Link>& row, uint32_t columns
 
 // Sum kept, no weight off by a quantum, order and patches kept.
 void expect_packed_well(const std::vector<Link>& row, const std::vector<Link>& packed) {
-  double sum = 0, packed_sum = 0, largest = 0;
+  double sum = 0, packed_sum = 0, positive = 0;
   for (const Link& link : row) {
     sum += static_cast<double>(link.weight);
-    largest = std::max(largest, static_cast<double>(link.weight));
+    positive += link.weight > 0;
   }
-  // The quantum is at most the largest weight over 65535 − 1 (see links.h); a decoded weight is a float.
-  const double quantum = largest / 65534 + largest * 6e-8;
+  // The quantum is at most a twelfth of the mean weight (see links.h) but for its rounding to float.
+  const double quantum = sum / (12 * positive) * (1 + 1e-6);
   size_t at = 0;
   for (const Link& link : row) {
     const bool kept = at < packed.size() && packed[at].patch == link.patch;
@@ -75,7 +77,8 @@ void expect_packed_well(const std::vector<Link>& row, const std::vector<Link>& p
     packed_sum += weight;
   }
   EXPECT_EQ(at, packed.size());
-  EXPECT_NEAR(packed_sum, sum, sum * 6e-8);
+  // The quantum and every weight are rounded to float.
+  EXPECT_NEAR(packed_sum, sum, sum * 1.2e-7);
 }
 
 TEST(Links, GatherIsTheMatrixProduct) {
@@ -85,12 +88,9 @@ TEST(Links, GatherIsTheMatrixProduct) {
   std::vector<double> values(rows + 1), out(rows);
   for (uint32_t i = 0; i <= rows; ++i) values[i] = i + 1;
   gather(links, values, out);
-  // A weight of ¼ beside ½ is a whole multiple of ½/65535 but for half of one.
-  for (uint32_t i = 0; i < rows; ++i) {
-    const double exact = 0.25 * ((i + 1) % rows + 1) + 0.5 * (rows + 1);
-    ASSERT_NEAR(out[i], exact, 0.5 / 65535 * rows);
-  }
-  for (const double sum : row_sums(links)) ASSERT_NEAR(sum, 0.75, 1e-10);
+  // ½ is twice ¼, and the values are whole numbers: nothing is rounded.
+  for (uint32_t i = 0; i < rows; ++i) ASSERT_EQ(out[i], 0.25 * ((i + 1) % rows + 1) + 0.5 * (rows + 1));
+  for (const double sum : row_sums(links)) ASSERT_EQ(sum, 0.75);
 }
 
 // The same numbers whatever the vectors: the product against the rows as unpacked.
@@ -100,6 +100,7 @@ TEST(Links, GatherAgreesWithTheUnpackedRows) {
     Links links = make_links(2100, columns);
     for (uint32_t i = 0; i < links.rows; ++i)
       append_row(links.blocks[i / Links::kRowsPerBlock], random_row(columns, random));
+    finish_blocks(links);
     std::vector<double> values(columns), out(links.rows);
     for (double& value : values) value = static_cast<double>(random() % 1000);
     gather(links, values, out);
@@ -179,11 +180,11 @@ TEST(Links, SpilledBlocksReadAsThoseInMemory) {
     const std::vector<Link> row = random_row(kept.columns, random);
     for (Links* links : {&kept, &spilled}) append_row(links->blocks[i / Links::kRowsPerBlock], row);
   }
-  for (const size_t block : {2, 0, 1})
+  for (size_t block = kept.blocks.size(); block-- > 0;)
     for (Links* links : {&kept, &spilled}) finish_block(*links, block);
   EXPECT_EQ(spilled.count(), kept.count());
   EXPECT_EQ(spilled.stored_bytes(), kept.stored_bytes());
-  EXPECT_TRUE(spilled.blocks[0].codes.empty());
+  EXPECT_TRUE(spilled.blocks[0].packed.empty());
   EXPECT_EQ(row_sums(spilled), row_sums(kept));
   std::vector<double> values(kept.columns), from_kept(kept.rows), from_spilled(kept.rows);
   for (double& value : values) value = static_cast<double>(random() % 1000);
@@ -202,7 +203,7 @@ TEST(Links, NoRoomToSpillIsOneLine) {
   Links links = make_links(Links::kRowsPerBlock, 10000, std::make_shared<SpillFile>(disk / ""));
   std::vector<Link> row(10000);
   for (uint32_t i = 0; i < row.size(); ++i) row[i] = {i, 0.5f};
-  for (int i = 0; i < 100; ++i) append_row(links.blocks[0], row);
+  for (uint32_t i = 0; i < links.rows; ++i) append_row(links.blocks[0], row);
   EXPECT_THAT(error_of<InputError>([&] { finish_block(links, 0); }),
               HasSubstr("could not write a temporary file for links: No space left on device"));
   EXPECT_EQ(disk.count(), 0u);
@@ -220,7 +221,7 @@ TEST(Links, ThreeAndAHalfBytesEach) {
         row.push_back({patch++, static_cast<float>(1 + random() % 1000)});
     append_row(links.blocks[i / Links::kRowsPerBlock], row);
   }
-  for (size_t b = 0; b < links.blocks.size(); ++b) finish_block(links, b);
+  finish_blocks(links);
   EXPECT_LT(static_cast<double>(links.stored_bytes()) / static_cast<double>(links.count()), 3.5);
 }
 
@@ -234,6 +235,7 @@ TEST(Links, EmptyRowsAreFine) {
   Links links = make_links(2, 2);
   append_row(links.blocks[0], {});
   append_row(links.blocks[0], {});
+  finish_blocks(links);
   std::vector<double> out(2, 7);
   gather(links, std::vector<double>{1, 1}, out);
   EXPECT_EQ(out, (std::vector<double>{0, 0}));
