@@ -45,6 +45,12 @@ void check_options(const RefereeOptions& options) {
   }
 }
 
+SurfacePoint receiver_at(const Surface& surface, uint32_t texel) {
+  const auto width = static_cast<uint32_t>(surface.width());
+  return {{texel % width, texel / width, surface.heights_m[texel] / surface.texel_size_m},
+          glm::dvec3(surface.normals[texel])};
+}
+
 uint32_t group_count(const RefereeOptions& options) {
   const auto paths = static_cast<uint32_t>(options.paths);
   return std::max(2u, (paths + kRefereeGroupPaths - 1) / kRefereeGroupPaths);
@@ -185,7 +191,6 @@ RefereeEstimates referee_texels(const Surface& surface, std::span<const uint32_t
   check_options(options);
   const Referee referee(surface, options);
   const auto quantities = static_cast<size_t>(referee.quantities());
-  const auto width = static_cast<uint32_t>(surface.width());
   RefereeEstimates estimates = make_estimates(referee.quantities(), group_count(options), texels.size());
   std::vector<RayCounts> counts(texels.size());
   Progress progress("refereeing", texels.size(), "texel");
@@ -193,9 +198,7 @@ RefereeEstimates referee_texels(const Surface& surface, std::span<const uint32_t
     std::vector<double> out(quantities);
     for (size_t i = begin; i < end; ++i) {
       const uint32_t texel = texels[i];
-      const SurfacePoint receiver{
-          {texel % width, texel / width, surface.heights_m[texel] / surface.texel_size_m},
-          glm::dvec3(surface.normals[texel])};
+      const SurfacePoint receiver = receiver_at(surface, texel);
       std::vector<Moments> moments(quantities);
       for (uint32_t g = 0; g < estimates.groups; ++g) {
         run_group(
@@ -211,6 +214,33 @@ RefereeEstimates referee_texels(const Surface& surface, std::span<const uint32_t
   });
   add_counts(counts, estimates);
   return estimates;
+}
+
+std::vector<double> referee_visible_fractions(const Surface& surface, std::span<const uint32_t> texels,
+                                              int rays, uint64_t seed) {
+  if (rays < 1) throw InputError(fmt::format("referee rays {}, expected at least 1", rays));
+  const HeightWalk walk(surface);
+  const double lift = walk.start_lift(RefereeOptions().lift_texels);
+  const int side = static_cast<int>(std::ceil(std::sqrt(rays)));
+  constexpr uint64_t kFractionGroup = ~uint64_t{0};
+  std::vector<double> fractions(texels.size());
+  parallel_for(texels.size(), 16, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      RefereeRandom random(seed, texels[i], kFractionGroup);
+      const SurfacePoint receiver = receiver_at(surface, texels[i]);
+      const glm::dvec3 start = receiver.position + glm::dvec3(0, 0, lift);
+      int visible = 0;
+      for (int cell = 0; cell < side * side; ++cell) {
+        const glm::dvec3 direction =
+            uniform_direction(receiver.normal, (cell / side + random.uniform()) / side,
+                              (cell % side + random.uniform()) / side);
+        SurfacePoint hit;
+        visible += walk.follow(start, direction, hit) != WalkEnd::kHit;
+      }
+      fractions[i] = static_cast<double>(visible) / (side * side);
+    }
+  });
+  return fractions;
 }
 
 RefereeEstimates referee_area(const Surface& surface, const RefereeOptions& options) {

@@ -82,6 +82,11 @@ struct RefereeInterval {
 RefereeEstimates referee_texels(const Surface& surface, std::span<const uint32_t> texels,
                                 const RefereeOptions& options);
 
+// α of the given texels by `rays` rays each, rounded up to a square, one at random in each cell of equal
+// solid angle of the hemisphere about the shading normal. Throws InputError where rays < 1.
+std::vector<double> referee_visible_fractions(const Surface& surface, std::span<const uint32_t> texels,
+                                              int rays, uint64_t seed);
+
 // One receiver: the surface itself, the mean over its area about the facets' normals.
 RefereeEstimates referee_area(const Surface& surface, const RefereeOptions& options);
 

@@ -61,4 +61,13 @@ inline glm::dvec3 random_cosine_direction(const glm::dvec3& normal, RefereeRando
   return squared > 1e-20 ? sum / std::sqrt(squared) : normal;
 }
 
+// Unit vector of the hemisphere about `normal`: cosine u to it, at v of a turn around it. Uniform in solid
+// angle where u and v are.
+inline glm::dvec3 uniform_direction(const glm::dvec3& normal, double u, double v) {
+  const glm::dvec3 aside = std::abs(normal.z) < 0.5 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 tangent = glm::normalize(glm::cross(normal, aside));
+  const double sine = std::sqrt(1 - u * u), angle = 2 * kPi * v;
+  return u * normal + sine * (std::cos(angle) * tangent + std::sin(angle) * glm::cross(normal, tangent));
+}
+
 }  // namespace hemibake

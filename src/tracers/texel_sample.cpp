@@ -85,4 +85,35 @@ double weighted_mean(const TexelSample& sample, std::span<const double> values) 
   return sum / population;
 }
 
+namespace {
+
+// Share of all texels that are inside, estimated.
+double domain_share(const TexelSample& sample, const std::vector<bool>& inside) {
+  return weighted_mean(sample, std::vector<double>(inside.begin(), inside.end()));
+}
+
+}  // namespace
+
+double weighted_mean(const TexelSample& sample, const std::vector<bool>& inside,
+                     std::span<const double> values) {
+  std::vector<double> within(values.begin(), values.end());
+  for (size_t i = 0; i < within.size(); ++i)
+    if (!inside[i]) within[i] = 0;
+  return weighted_mean(sample, within) / domain_share(sample, inside);
+}
+
+RefereeInterval mean_of_domain(const TexelSample& sample, const std::vector<bool>& inside,
+                               std::span<const double> values, std::span<const double> variances,
+                               double confidence) {
+  expect_equal(inside.size(), sample.texels.size(), "marks of the sampled texels");
+  const double mean = weighted_mean(sample, inside, values), share = domain_share(sample, inside);
+  std::vector<double> deviations(values.size(), 0.0), noise(values.size(), 0.0);
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (!inside[i]) continue;
+    deviations[i] = (values[i] - mean) / share;
+    noise[i] = variances[i] / (share * share);
+  }
+  return {mean, mean_from_sample(sample, deviations, noise, confidence).half_width};
+}
+
 }  // namespace hemibake

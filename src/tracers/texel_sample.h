@@ -38,4 +38,13 @@ RefereeInterval mean_from_sample(const TexelSample& sample, std::span<const doub
 // The mean of a sampled quantity itself, weighted like mean_from_sample.
 double weighted_mean(const TexelSample& sample, std::span<const double> values);
 
+// The same two of some of the texels only, which the strata know nothing of: a domain (Cochran, 5A.14).
+// inside: per sampled texel, one or more of them true. The interval is that of a ratio of two estimates, to
+// first order.
+RefereeInterval mean_of_domain(const TexelSample& sample, const std::vector<bool>& inside,
+                               std::span<const double> values, std::span<const double> variances,
+                               double confidence);
+double weighted_mean(const TexelSample& sample, const std::vector<bool>& inside,
+                     std::span<const double> values);
+
 }  // namespace hemibake

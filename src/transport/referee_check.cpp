@@ -13,12 +13,8 @@
 namespace hemibake {
 namespace {
 
-// Sampled texels of one AO bin: `first` … in the joined sample.
-struct Bin {
-  double ao_low, ao_high;
-  TexelSample sample;
-  size_t first = 0;
-};
+// Rays for the AO a sampled texel is binned by: off by some 0.003.
+constexpr int kAoRays = 1024;
 
 // One quantity at every sampled texel, over π.
 struct Comparison {
@@ -48,31 +44,27 @@ void check_inputs(const Surface& surface, const Bake& bake, const RefereeCheckOp
   if (options.ao_bins < 1) throw InputError(fmt::format("{} AO bins, expected 1 or more", options.ao_bins));
 }
 
-std::vector<Bin> sample_bins(const Grid<float>& visible_fraction, const RefereeCheckOptions& options) {
-  const auto bin_count = static_cast<size_t>(options.ao_bins);
-  std::vector<std::vector<uint32_t>> population(bin_count);
-  for (size_t i = 0; i < visible_fraction.size(); ++i) {
-    const double ao = std::clamp(static_cast<double>(visible_fraction[i]), 0.0, 1.0);
-    const auto bin = std::min(bin_count - 1, static_cast<size_t>(ao * static_cast<double>(bin_count)));
-    population[bin].push_back(static_cast<uint32_t>(i));
-  }
+size_t bin_of(double ao, int bins) {
+  return static_cast<size_t>(std::clamp(static_cast<int>(ao * bins), 0, bins - 1));
+}
+
+TexelSample sample_by_ao(const Grid<float>& visible_fraction, const RefereeCheckOptions& options) {
+  std::vector<std::vector<uint32_t>> population(static_cast<size_t>(options.ao_bins));
+  for (size_t i = 0; i < visible_fraction.size(); ++i)
+    population[bin_of(static_cast<double>(visible_fraction[i]), options.ao_bins)].push_back(
+        static_cast<uint32_t>(i));
   double roots = 0;
   for (const auto& texels : population) roots += std::sqrt(static_cast<double>(texels.size()));
 
-  std::vector<Bin> bins;
-  size_t first = 0;
-  for (size_t b = 0; b < bin_count; ++b) {
+  TexelSample sample;
+  for (size_t b = 0; b < population.size(); ++b) {
     if (population[b].empty()) continue;
     const double share = std::sqrt(static_cast<double>(population[b].size())) / roots;
     const auto wanted = static_cast<size_t>(std::ceil(share * static_cast<double>(options.texels)));
-    const auto width = 1 / static_cast<double>(bin_count), low = static_cast<double>(b) * width;
     const size_t all = options.texels >= visible_fraction.size() ? population[b].size() : 0;
-    Bin bin{low, low + width,
-            sample_texels(population[b], std::max({size_t{2}, wanted, all}), options.seed + b), first};
-    first += bin.sample.texels.size();
-    bins.push_back(std::move(bin));
+    append_sample(sample, sample_texels(population[b], std::max({size_t{2}, wanted, all}), options.seed + b));
   }
-  return bins;
+  return sample;
 }
 
 // Σ_b ρᵇ E_b/π of a bake, b = 0 … last; also what is still under way after it at albedo 1.
@@ -122,28 +114,25 @@ RefereeVerdict judge(const RefereeRow& row) {
                                                              : RefereeVerdict::kUndecided;
 }
 
-// Row of the sampled texels first … of a comparison.
-RefereeRow make_row(const Comparison& comparison, const TexelSample& sample, size_t first,
+// Row of the sampled texels inside.
+RefereeRow make_row(const Comparison& comparison, const TexelSample& sample, const std::vector<bool>& inside,
                     double relative_tolerance, double confidence) {
   const size_t count = sample.texels.size();
-  const auto part = [&](const std::vector<double>& values) {
-    return std::span(values).subspan(first, count);
-  };
   std::vector<double> difference(count), squared(count);
   for (size_t i = 0; i < count; ++i) {
-    difference[i] = comparison.bake[first + i] - comparison.referee[first + i];
-    squared[i] = difference[i] * difference[i] - comparison.referee_variance[first + i];
+    difference[i] = comparison.bake[i] - comparison.referee[i];
+    squared[i] = difference[i] * difference[i] - comparison.referee_variance[i];
   }
   const RefereeInterval bias =
-      mean_from_sample(sample, difference, part(comparison.referee_variance), confidence);
+      mean_of_domain(sample, inside, difference, comparison.referee_variance, confidence);
   RefereeRow row;
   row.quantity = comparison.quantity;
-  row.texels = count;
-  row.bake_mean = weighted_mean(sample, part(comparison.bake));
-  row.referee_mean = weighted_mean(sample, part(comparison.referee));
+  row.texels = static_cast<size_t>(std::count(inside.begin(), inside.end(), true));
+  row.bake_mean = weighted_mean(sample, inside, comparison.bake);
+  row.referee_mean = weighted_mean(sample, inside, comparison.referee);
   row.bias = bias.mean;
-  row.half_width = bias.half_width + weighted_mean(sample, part(comparison.cut_off));
-  row.rms_difference = std::sqrt(std::max(0.0, weighted_mean(sample, squared)));
+  row.half_width = bias.half_width + weighted_mean(sample, inside, comparison.cut_off);
+  row.rms_difference = std::sqrt(std::max(0.0, weighted_mean(sample, inside, squared)));
   row.tolerance = relative_tolerance * row.referee_mean;
   row.verdict = judge(row);
   return row;
@@ -154,9 +143,7 @@ RefereeRow make_row(const Comparison& comparison, const TexelSample& sample, siz
 RefereeCheck check_against_referee(const Surface& surface, const Bake& bake,
                                    const RefereeCheckOptions& options) {
   check_inputs(surface, bake, options);
-  const std::vector<Bin> bins = sample_bins(bake.visible_fraction, options);
-  TexelSample sample;
-  for (const Bin& bin : bins) append_sample(sample, bin.sample);
+  const TexelSample sample = sample_by_ao(bake.visible_fraction, options);
 
   RefereeOptions referee;
   referee.paths = options.paths;
@@ -172,14 +159,20 @@ RefereeCheck check_against_referee(const Surface& surface, const Bake& bake,
   check.paths_per_texel = measured.paths();
   check.rays = measured.rays;
   check.lost_rays = measured.lost_rays;
+  const std::vector<bool> everywhere(sample.texels.size(), true);
   for (const Comparison& comparison : comparisons)
-    check.means.push_back(make_row(comparison, sample, 0, options.mean_tolerance, options.confidence));
-  for (const Bin& bin : bins) {
+    check.means.push_back(
+        make_row(comparison, sample, everywhere, options.mean_tolerance, options.confidence));
+
+  const std::vector<double> ao = referee_visible_fractions(surface, sample.texels, kAoRays, options.seed);
+  for (size_t b = 0; b < static_cast<size_t>(options.ao_bins); ++b) {
+    std::vector<bool> inside(ao.size());
+    for (size_t i = 0; i < ao.size(); ++i) inside[i] = bin_of(ao[i], options.ao_bins) == b;
+    if (std::count(inside.begin(), inside.end(), true) < 2) continue;
     for (const Comparison& comparison : comparisons) {
-      check.bins.push_back(
-          make_row(comparison, bin.sample, bin.first, options.bin_tolerance, options.confidence));
-      check.bins.back().ao_low = bin.ao_low;
-      check.bins.back().ao_high = bin.ao_high;
+      check.bins.push_back(make_row(comparison, sample, inside, options.bin_tolerance, options.confidence));
+      check.bins.back().ao_low = static_cast<double>(b) / options.ao_bins;
+      check.bins.back().ao_high = static_cast<double>(b + 1) / options.ao_bins;
     }
   }
   return check;

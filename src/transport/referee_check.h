@@ -5,6 +5,10 @@
 // ambient occlusion (`ao`): each of the equally wide AO bins gets a share in proportion to the root of its
 // texel count, so that rare bins are measured too (power allocation: Bankier, "Power Allocations", The
 // American Statistician 42, 1988).
+//
+// Bins are of AO that the referee measures itself. Bins of the bake's own would find errors that no texel
+// has: rays that by chance meet more sky raise a texel's α and E₀ and lower its E₁ (a row adds up to 1), so
+// that the bake's high bins collect what is too dark in E₁ and its low bins what is too bright.
 #pragma once
 
 #include <cstddef>
@@ -51,7 +55,7 @@ struct RefereeRow {
 struct RefereeCheck {
   std::vector<RefereeRow> means;  // over the map: E_0 … E_bounces, total at `albedo`, and the bake's own sum
                                   // of bounces at albedo 1
-  std::vector<RefereeRow> bins;  // the same quantities per AO bin that holds texels, bin by bin
+  std::vector<RefereeRow> bins;  // the same quantities per AO bin that holds two texels or more, bin by bin
   size_t texels = 0;
   uint64_t paths_per_texel = 0;
   uint64_t rays = 0;

@@ -89,6 +89,13 @@ TEST(RefereeClosedForms, GrooveVertexAndWallTexels) {
   }
   const double s = 0.5, f = (std::cos(2 * psi) - s) / std::sqrt(1 + s * s - 2 * s * std::cos(2 * psi));
   EXPECT_TRUE(referee_interval(measured, 1, 0, confidence).contains((1 - f) / 2));
+
+  // AO: at the vertex a lune of angle 2ψ is open, on the wall acos(f)/π.
+  constexpr int kRays = 10'000;
+  const std::vector<double> ao = referee_visible_fractions(surface, texels, kRays, 5);
+  const auto tolerance = [](double share) { return 4 * std::sqrt(share * (1 - share) / kRays); };
+  EXPECT_NEAR(ao[0], 2 * psi / kPi, tolerance(2 * psi / kPi));
+  EXPECT_NEAR(ao[1], std::acos(f) / kPi, tolerance(std::acos(f) / kPi));
 }
 
 TEST(RefereeClosedForms, SphericalPitIsTheSameEverywhere) {

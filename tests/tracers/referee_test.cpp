@@ -70,6 +70,22 @@ TEST(RefereeRandom, DirectionsAreCosineDistributed) {
   EXPECT_NEAR(side2, 0.25, tolerance);
 }
 
+TEST(RefereeRandom, UniformDirectionsAboutAnyNormal) {
+  // Equal solid angles: the mean cosine is ½, the mean across 0, and the hemisphere is never left.
+  for (const glm::dvec3& normal :
+       {glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0), glm::normalize(glm::dvec3(0.3, -0.5, 0.8))}) {
+    glm::dvec3 mean(0);
+    constexpr int kSide = 100;
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const glm::dvec3 d = uniform_direction(normal, (i / kSide + 0.5) / kSide, (i % kSide + 0.5) / kSide);
+      ASSERT_NEAR(glm::length(d), 1, 1e-12);
+      ASSERT_GE(glm::dot(d, normal), 0);
+      mean += d / double{kSide * kSide};
+    }
+    EXPECT_NEAR(glm::length(mean - 0.5 * normal), 0, 1e-12);
+  }
+}
+
 TEST(Referee, FlatGroundIsExact) {
   const Surface surface = make_surface(Grid<float>(8, 8, 0.3f), 1, 1, Edge::kWrap);
   const RefereeEstimates measured = referee_texels(surface, all_texels(surface), {});
@@ -79,6 +95,7 @@ TEST(Referee, FlatGroundIsExact) {
     EXPECT_EQ(measured.mean[measured.index(i, 3)], 1);
     EXPECT_EQ(referee_interval(measured, i, 0, 0.99).half_width, 0);
   }
+  for (const double ao : referee_visible_fractions(surface, all_texels(surface), 100, 0)) EXPECT_EQ(ao, 1);
 }
 
 TEST(Referee, BouncesAddUpToTheTotals) {

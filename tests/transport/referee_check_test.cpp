@@ -97,6 +97,22 @@ TEST(RefereeCheck, ErrorsThatCancelShowInTheRms) {
   EXPECT_NEAR(row.rms_difference, 0.1 / kPi, 0.02 * 0.1);
 }
 
+// Rays that by chance meet more sky raise α and E₀ of a texel and lower its E₁: no texel is wrong on average,
+// and no bin may say so, though bins of the bake's own AO would.
+TEST(RefereeCheck, NoiseThatMovesTexelsBetweenBinsIsNoError) {
+  Bake bake = right_bake();
+  for (size_t i = 0; i < bake.irradiance[0].size(); ++i) {
+    const float noise = i % 2 == 0 ? 0.05f : -0.05f;
+    bake.visible_fraction[i] += noise;
+    bake.irradiance[0][i] += noise * static_cast<float>(kPi);
+    bake.irradiance[1][i] -= noise * static_cast<float>(kPi);
+  }
+  for (const RefereeRow& row : check_against_referee(make_noise(), bake, long_check()).bins)
+    if (row.texels > 20) {
+      EXPECT_NE(row.verdict, RefereeVerdict::kOutside) << row.quantity << " " << row.ao_low;
+    }
+}
+
 TEST(RefereeCheck, TooFewPathsAreNoProof) {
   RefereeCheckOptions options;
   options.texels = 20;
@@ -114,13 +130,16 @@ TEST(RefereeCheck, BinsStandForAllTheirTexels) {
   for (const RefereeRow& row : check.bins) {
     if (row.quantity == "E0") {
       texels += row.texels;
-      // ao is E0/π in this bake.
-      EXPECT_GE(row.bake_mean, row.ao_low - 1e-6);
-      EXPECT_LE(row.bake_mean, row.ao_high + 1e-6);
+      // α² ≤ E0/π ≤ α (2 − α) in every texel; the noise of α and of the bake, 0.02 each, averages out or
+      // helps.
+      EXPECT_GE(row.bake_mean, row.ao_low * row.ao_low - 0.02);
+      EXPECT_LE(row.bake_mean, row.ao_high * (2 - row.ao_high) + 0.02);
     }
     EXPECT_NE(row.verdict, RefereeVerdict::kOutside) << row.quantity << " " << row.ao_low;
   }
-  EXPECT_EQ(texels, check.texels);
+  // Bins of one texel are left out.
+  EXPECT_LE(texels, check.texels);
+  EXPECT_GE(texels + 10, check.texels);
   EXPECT_GE(check.texels, 290u);
   EXPECT_LE(check.texels, 330u);
 }
