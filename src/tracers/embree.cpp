@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <span>
 #include <stdexcept>
 
@@ -85,7 +86,8 @@ class EmbreeTracer final : public Tracer {
   template <class StartOf>
   void trace_rays(std::span<const WeightedDirection> rays, const FloatFrame& frame, const StartOf& start_of,
                   uint32_t own_facet, double choice, bool with_links, Row& row, TracerCounts& counts) const;
-  void add_links(const SurfaceHit& hit, double weight, double choice, std::vector<Link>& links) const;
+  void add_links(const SurfaceHit& hit, double weight, double choice, bool of_node,
+                 std::vector<Link>& links) const;
   void trace_node(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const;
   uint32_t facet_of_primitive(uint32_t primitive) const;
   glm::dvec2 hit_position_texels(const SurfaceHit& hit) const;
@@ -330,10 +332,12 @@ EmbreeTracer::FloatFrame EmbreeTracer::texel_frame(uint32_t texel) const {
   return {frame.tangent, frame.bitangent, frame.normal};
 }
 
-void EmbreeTracer::add_links(const SurfaceHit& hit, double weight, double choice,
+// Nodes alone can meet only each other for ever (add_node_links): a texel draws one node however near it is.
+void EmbreeTracer::add_links(const SurfaceHit& hit, double weight, double choice, bool of_node,
                              std::vector<Link>& links) const {
   if (options_.patches == Patches::kFacets) {
-    add_node_links(patches_, hit.facet, {hit.u, hit.v}, hit.distance_texels, choice, weight, links);
+    const double distance = of_node ? hit.distance_texels : std::numeric_limits<double>::infinity();
+    add_node_links(patches_, hit.facet, {hit.u, hit.v}, distance, choice, weight, links);
   } else if (options_.texel_links == TexelLinks::kNearest) {
     add_nearest_link(surface_, hit_position_texels(hit), weight, links);
   } else {
@@ -357,7 +361,7 @@ void EmbreeTracer::trace_rays(std::span<const WeightedDirection> rays, const Flo
     if (fate == Fate::kHit) {
       ++hits;
       choice = shift_modulo_one(choice, kGoldenStep);
-      if (with_links) add_links(hit, rays[i].cosine_weight, choice, row.links);
+      if (with_links) add_links(hit, rays[i].cosine_weight, choice, own_facet != kNoFacet, row.links);
     } else {
       visible += rays[i].uniform_weight;
       direct += rays[i].cosine_weight;

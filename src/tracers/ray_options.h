@@ -14,7 +14,7 @@ namespace hemibake {
 
 // Rays of all nodes of a facet over those of a texel: twice this, and the texels' own rays, is what bounces
 // cost over the texels' rays alone.
-inline constexpr double kFacetRays = 0.7;
+inline constexpr double kFacetRays = 0.6;
 
 // Rays of a node at a corner of its facet over those of any other. The texel there sees the corners of the
 // six facets around it from next to it, and their noise with them: the first bounce of rough maps is a fifth
