@@ -58,7 +58,7 @@ TEST_P(SphericalCap, EveryBounceIsFlatOverThePit) {
   constexpr int kSide = 256, kRings = 10;
   const double angle = kPi / 3, c = (1 + std::cos(angle)) / 2;
   const Surface surface = synthetic_surface(SyntheticKind::kBowl, kSide, kSide, {}, angle);
-  const Traced traced = trace_light(surface, GetParam(), 64, 5);
+  const Traced traced = trace_light(surface, GetParam(), 96, 5);
   const BowlGeometry bowl = bowl_geometry(kSide, kSide, angle);
 
   for (size_t b = 0; b <= 5; ++b) {
@@ -75,7 +75,7 @@ TEST_P(SphericalCap, EveryBounceIsFlatOverThePit) {
     const double expected = c * std::pow(1 - c, static_cast<double>(b));
     Moments pit;
     for (const Moments& ring : rings) pit.add(ring.mean);
-    // Flat over the pit, the bar of issue 2. A ring has 400 texels or more: their rays leave 64^(−3/4)/20,
+    // Flat over the pit, the bar of issue 2. A ring has 400 texels or more: their rays leave 96^(−3/4)/20,
     // 0.2 %; the rest is the height of chords under the sphere, (texel/R)²/8, and the mean over facets in
     // place of the point.
     for (size_t ring = 0; ring < kRings; ++ring)

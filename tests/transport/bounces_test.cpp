@@ -72,8 +72,9 @@ TEST(Bounces, NoBouncesLeavesTheDirectLight) {
   EXPECT_NEAR(bounces.residual[0], 0.75, 1e-6);
 }
 
-Visibility see(const Surface& surface, Patches patches, int rays) {
+Visibility see(const Surface& surface, Patches patches, int rays, uint64_t seed = 0) {
   RayOptions options;
+  options.seed = seed;
   options.rays = rays;
   options.patches = patches;
   return trace_surface(*make_embree_tracer(surface, options), surface.width(), surface.height(), patches,
@@ -127,11 +128,13 @@ double mean_product(const Surface& surface, const PatchSet& patches, const std::
 TEST(Bounces, LightThatStaysIsLightThatComesBack) {
   const Surface surface = synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.2);
   const Visibility seen = see(surface, Patches::kFacets, 256);
+  // Of other rays, so that the noise of a node is not multiplied by itself.
+  const Visibility again = see(surface, Patches::kFacets, 256, 1);
   const PatchSet patches = make_patches(surface, Patches::kFacets);
   std::vector<double> light(seen.patch_direct_over_pi.begin(), seen.patch_direct_over_pi.end()),
       next(light.size());
   std::vector<double> ones(light.size(), 1), blocked(light.size());
-  for (size_t i = 0; i < light.size(); ++i) blocked[i] = 1 - light[i];
+  for (size_t i = 0; i < light.size(); ++i) blocked[i] = 1 - static_cast<double>(again.patch_direct_over_pi[i]);
   for (int bounce = 0; bounce < 4; ++bounce) {
     gather(seen.patches, light, next);
     EXPECT_NEAR(mean_product(surface, patches, next, ones) / mean_product(surface, patches, light, blocked),
