@@ -15,7 +15,8 @@
 namespace hemibake {
 namespace {
 
-constexpr uint32_t kPilotGroups = 64, kGroupRows = 16;
+// Neighbouring patches are the same node of one run: more groups, to know how many facets are cut finely.
+constexpr uint32_t kTexelGroups = 64, kPatchGroups = 512, kGroupRows = 16;
 constexpr uint64_t kPilotStream = 100;
 // Seconds a link takes in a bounce: measured 1–2 ns where the light under way fits the cache.
 constexpr double kSecondsPerLink = 2e-9;
@@ -32,23 +33,28 @@ struct Pilot {
 // in each of equal strata (a fixed step would meet the same columns of the map again and again), traced on
 // this thread. trace_rows(first, rows, counts) as Tracer::trace_texels.
 template <class TraceRows>
-Pilot trace_pilot(uint32_t count, uint32_t columns, const TraceRows& trace_rows) {
+Pilot trace_pilot(uint32_t count, uint32_t columns, uint32_t most_groups, const TraceRows& trace_rows) {
   Pilot pilot;
   TracerCounts counts;
   std::vector<Row> rows(std::min(count, kGroupRows));
   const uint32_t all_groups = (count + kGroupRows - 1) / kGroupRows,
-                 groups = std::min(all_groups, kPilotGroups);
-  Links links = make_links(groups * kGroupRows, columns);
-  uint64_t traced_links = 0;
-  const double start = process_cpu_seconds();
+                 groups = std::min(all_groups, most_groups);
+  std::vector<uint32_t> firsts;
   for (uint32_t i = 0; i < groups; ++i) {
     const double place = (i + unit_interval(mix_bits(0, kPilotStream, i))) / groups;
-    const uint32_t first = std::min(all_groups - 1, static_cast<uint32_t>(place * all_groups)) * kGroupRows;
+    firsts.push_back(std::min(all_groups - 1, static_cast<uint32_t>(place * all_groups)) * kGroupRows);
+    pilot.rows += std::min(kGroupRows, count - firsts.back());
+  }
+  Links links = make_links(pilot.rows, columns);
+  uint32_t next_row = 0;
+  uint64_t traced_links = 0;
+  const double start = process_cpu_seconds();
+  for (const uint32_t first : firsts) {
     const std::span<Row> group(rows.data(), std::min(kGroupRows, count - first));
     trace_rows(first, group, counts);
     uint64_t group_links = 0;
     for (const Row& row : group) {
-      append_row(links.blocks[pilot.rows++ / Links::kRowsPerBlock], row.links);
+      append_row(links.blocks[next_row++ / Links::kRowsPerBlock], row.links);
       group_links += row.links.size();
     }
     traced_links += group_links;
@@ -94,14 +100,14 @@ BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptio
   const auto of_texels = [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
     tracer.trace_texels(first, options.with_links, rows, counts);
   };
-  add_pilot(trace_pilot(surface.texel_count(), tracer.patches().count, of_texels), surface.texel_count(),
-            plan);
+  add_pilot(trace_pilot(surface.texel_count(), tracer.patches().count, kTexelGroups, of_texels),
+            surface.texel_count(), plan);
   if (options.with_links && options.patches == Patches::kFacets) {
     const auto of_patches = [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
       tracer.trace_patches(first, true, rows, counts);
     };
-    add_pilot(trace_pilot(tracer.patches().count, tracer.patches().count, of_patches), tracer.patches().count,
-              plan);
+    add_pilot(trace_pilot(tracer.patches().count, tracer.patches().count, kPatchGroups, of_patches),
+              tracer.patches().count, plan);
   }
   if (!options.with_links) plan.link_bytes = 0;
   plan.bounce_cpu_seconds = static_cast<double>(plan.links) * options.bounces * kSecondsPerLink;
