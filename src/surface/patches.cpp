@@ -97,14 +97,18 @@ FacetNode facet_node(const PatchSet& patches, uint32_t patch) {
 }
 
 std::array<PatchShare, 3> patch_shares(const PatchSet& patches, uint32_t facet, glm::dvec2 uv) {
-  const uint32_t cell = facet / 2, row = cell / patches.columns, column = cell % patches.columns;
-  const PatchRun run = patch_run(patches, row * patches.runs_in_row + column / kRunCells);
-  const int k = run.subdivision;
+  const uint32_t cell = facet / 2, row = cell / patches.columns, column = cell - row * patches.columns;
+  const uint32_t run = row * patches.runs_in_row + column / kRunCells, first = patches.first[run];
+  const uint32_t cells = std::min(kRunCells, patches.columns - column / kRunCells * kRunCells);
+  const int k = patches.first[run + 1] - first == 2 * node_count(kCoarseSubdivision) * cells
+                    ? kCoarseSubdivision
+                    : kFineSubdivision;
   const double u = std::clamp(uv.x, 0.0, 1.0) * k, v = std::clamp(uv.y, 0.0, 1.0) * k;
   const int a = std::min(static_cast<int>(u), k - 1), b = std::min(static_cast<int>(v), k - 1 - a);
   const double fu = u - a, fv = std::min(v - b, 1.0);
   const auto patch_at = [&](int column_of_node, int row_of_node) {
-    return run.patch(facet % 2, node_at(k, column_of_node, row_of_node), column % kRunCells);
+    const uint32_t half_and_node = facet % 2 * node_count(k) + node_at(k, column_of_node, row_of_node);
+    return first + half_and_node * cells + column % kRunCells;
   };
   // The half of the little square at (a, b) that is a triangle like the facet, or the other way round. On the
   // facet's long side there is only the first kind, whatever fu + fv rounds to.

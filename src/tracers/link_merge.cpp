@@ -1,6 +1,7 @@
 #include "tracers/link_merge.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -49,6 +50,31 @@ void sum_equal_patches(std::vector<Link>& links) {
   for (size_t i = 0; i < sums.size(); ++i) links[i].weight = static_cast<float>(sums[i]);
 }
 
+// So few links are sorted faster one by one, each into its place among those before it.
+constexpr size_t kFewLinks = 32;
+
+void combine_few(std::vector<Link>& links) {
+  struct Sum {
+    uint32_t patch;
+    double weight;
+  };
+  std::array<Sum, kFewLinks> sums;
+  size_t count = 0;
+  for (const Link link : links) {
+    size_t place = count;
+    while (place > 0 && sums[place - 1].patch >= link.patch) --place;
+    if (place < count && sums[place].patch == link.patch) {
+      sums[place].weight += static_cast<double>(link.weight);
+      continue;
+    }
+    std::copy_backward(sums.data() + place, sums.data() + count, sums.data() + count + 1);
+    sums[place] = {link.patch, static_cast<double>(link.weight)};
+    ++count;
+  }
+  links.resize(count);
+  for (size_t i = 0; i < count; ++i) links[i] = {sums[i].patch, static_cast<float>(sums[i].weight)};
+}
+
 }  // namespace
 
 void add_nearest_link(const Surface& surface, glm::dvec2 position, double weight, std::vector<Link>& links) {
@@ -77,6 +103,7 @@ void add_node_links(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, doub
 }
 
 void combine_links(std::vector<Link>& links) {
+  if (links.size() <= kFewLinks) return combine_few(links);
   sum_equal_patches(links);
   std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.patch < b.patch; });
 }

@@ -22,11 +22,6 @@ inline int rays_per_node(int rays, int k) {
   return std::max(std::min(rays, 8), static_cast<int>(std::lround(kFacetRays * rays / node_count(k))));
 }
 
-// Azimuths of each node, for slices: at least five, so that what is seen does not lean to where the few look;
-// odd, since an odd number also integrates the cosine weight of a tilted facet well over the azimuths (its
-// odd harmonics above the first vanish).
-inline int azimuths_per_node(int azimuths, int k) { return std::max(5, rays_per_node(azimuths, k) | 1); }
-
 // Steps of the golden ratio: any number of them is spread evenly over the unit interval.
 inline constexpr double kGoldenStep = 0.6180339887498949;
 

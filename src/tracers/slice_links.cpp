@@ -37,9 +37,9 @@ SliceStretchSums sums_between(double low_slope, double high_slope) {
           (sin_high * sin_high - sin_low * sin_low) / 2};
 }
 
-double hit_distance(const Surface& surface, const SliceHit& hit, glm::dvec2 direction) {
-  const FacetLine line(surface, hit.facet, direction, hit.high, hit.inverse_distance);
-  return std::min(line.far, line.distance_at(static_cast<double>(hit.slope)));
+double stretch_distance(const Surface& surface, const Stretch& stretch, double slope, glm::dvec2 direction) {
+  const FacetLine line(surface, stretch.facet, direction, stretch.high, stretch.inverse_distance);
+  return std::min(line.far, line.distance_at(slope));
 }
 
 Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 direction,
@@ -70,7 +70,8 @@ Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 
   return clipped;
 }
 
-void append_hits(const Stretch& stretch, double rim, float strata_per_weight, std::vector<SliceHit>& hits) {
+void append_hits(const Surface& surface, const Stretch& stretch, glm::dvec2 start, glm::dvec2 direction,
+                 double rim, float strata_per_weight, std::vector<SliceHit>& hits) {
   const double low = static_cast<double>(stretch.low), high = static_cast<double>(stretch.high);
   const int pieces = 1 + static_cast<int>(stretch.weight * strata_per_weight);
   double begin = low;
@@ -78,29 +79,24 @@ void append_hits(const Stretch& stretch, double rim, float strata_per_weight, st
     const double share = static_cast<double>(piece) / pieces;
     const double end = std::tan((1 - share) * std::atan(low) + share * std::atan(high));
     const SliceStretchSums sums = sums_between(begin, end);
-    const double weight = sums.vertical - rim * sums.horizontal;
-    hits.push_back({stretch.facet, static_cast<float>(weight), static_cast<float>((begin + end) / 2),
-                    stretch.high, stretch.inverse_distance, stretch.azimuth});
+    const double weight = sums.vertical - rim * sums.horizontal, slope = (begin + end) / 2;
+    const double distance = stretch_distance(surface, stretch, slope, direction);
+    const glm::vec2 uv(facet_coordinates(surface, stretch.facet, start + distance * direction));
+    hits.push_back({stretch.facet, static_cast<float>(weight), uv.x, uv.y,
+                    static_cast<float>(distance * std::hypot(1, slope))});
     begin = end;
   }
 }
 
 void append_links(const Surface& surface, const PatchSet& patches, TexelLinks texel_links,
-                  const SliceHit& hit, double weight, glm::dvec2 start, glm::dvec2 direction, double choice,
-                  std::vector<Link>& links) {
-  const double distance = hit_distance(surface, hit, direction);
-  const glm::dvec2 position = start + distance * direction;
+                  const SliceHit& hit, double weight, double choice, std::vector<Link>& links) {
+  const glm::dvec2 uv(hit.u, hit.v);
   if (patches.kind == Patches::kFacets) {
-    const double ray_length =
-        distance * std::sqrt(1 + static_cast<double>(hit.slope) * static_cast<double>(hit.slope));
-    add_node_links(patches, hit.facet, facet_coordinates(surface, hit.facet, position), ray_length, choice,
-                   weight, links);
-    return;
-  }
-  if (texel_links == TexelLinks::kNearest) {
-    add_nearest_link(surface, position, weight, links);
+    add_node_links(patches, hit.facet, uv, static_cast<double>(hit.distance), choice, weight, links);
+  } else if (texel_links == TexelLinks::kNearest) {
+    add_nearest_link(surface, facet_point_texels(surface, hit.facet, uv), weight, links);
   } else {
-    add_bilinear_links(surface, position, weight, links);
+    add_bilinear_links(surface, facet_point_texels(surface, hit.facet, uv), weight, links);
   }
 }
 

@@ -13,20 +13,37 @@ constexpr double kOverlap = 1e-9;
 // A path this nearly parallel to a family of lines meets none of it in any distance that is followed.
 constexpr double kParallel = 1e-12;
 
+// std::floor is a function call on plain x86-64.
+int floor_to_int(double x) {
+  const int toward_zero = static_cast<int>(x);
+  return toward_zero - (x < toward_zero ? 1 : 0);
+}
+
 // The lines of one family that a path meets: x, y or x + y = line, one after the other.
 struct LineFamily {
-  double position, speed;  // of the path across the lines
-  int line;                // the next one
-  double distance;         // to it
+  double position, pace;  // of the path across the lines; pace: its length from one to the next
+  int line, step;         // the next one
+  double distance;        // to it
 
-  LineFamily(double p, double s, double first_distance) : position(p), speed(s) {
-    line = static_cast<int>(s > 0 ? std::floor(p) : std::ceil(p));
-    for (distance = to_line(); distance < first_distance;) advance();
+  LineFamily(double p, double speed, double first_distance) : position(p), step(speed > 0 ? 1 : -1) {
+    const bool parallel = std::abs(speed) < kParallel;
+    pace = parallel ? HUGE_VAL : 1 / speed;
+    line = floor_to_int(p) + (parallel == (speed > 0) ? 1 : 0);
+    for (distance = parallel ? HUGE_VAL : to_line(); distance < first_distance;) move(1);
   }
-  double to_line() const { return std::abs(speed) < kParallel ? HUGE_VAL : (line - position) / speed; }
-  void advance() {
-    line += speed > 0 ? 1 : -1;
-    distance = to_line();
+  double to_line() const { return (line - position) * pace; }
+  void move(int lines) {
+    line += lines * step;
+    distance = std::isinf(pace) ? HUGE_VAL : to_line();
+  }
+  // The path lies between this line and the next higher one.
+  int lower_line() const { return step > 0 ? line - 1 : line; }
+  // The line before the next one.
+  LineFamily back() const {
+    LineFamily before = *this;
+    before.move(-1);
+    if (before.distance == HUGE_VAL) before.distance = -HUGE_VAL;
+    return before;
   }
 };
 
@@ -34,8 +51,8 @@ struct LineFamily {
 glm::ivec2 window_corner(const SlicePath& path, int segment, int segments) {
   const double near = segment * path.step, far = (segment + segments) * path.step;
   const glm::dvec2 o = path.origin, d = path.direction;
-  return {static_cast<int>(std::floor(o.x + std::min(near * d.x, far * d.x))),
-          static_cast<int>(std::floor(o.y + std::min(near * d.y, far * d.y)))};
+  return {floor_to_int(o.x + std::min(near * d.x, far * d.x)),
+          floor_to_int(o.y + std::min(near * d.y, far * d.y))};
 }
 
 }  // namespace
@@ -50,49 +67,80 @@ SegmentWindows segment_windows(const SliceField& field, const SlicePath& path, i
   SegmentWindows windows;
   for (int level = 0; level < kSkipLevels; ++level) {
     glm::ivec2& corner = windows.corner[level];
+    if (level > 0 && kSkipSegments[level] == kSkipSegments[level - 1]) {
+      corner = windows.corner[level - 1];
+      continue;
+    }
+    if (segment % kSkipSegments[level] != 0) break;
     corner = window_corner(path, segment, kSkipSegments[level]);
     if (field.wrap) corner = {wrap_index(corner.x, field.width), wrap_index(corner.y, field.height)};
   }
   return windows;
 }
 
+glm::dvec2 segment_begin(const SlicePath& path, int segment) {
+  return path.origin + segment * path.step * path.direction - glm::dvec2(window_corner(path, segment, 1));
+}
+
 void append_crossings(const SliceField& field, const SlicePath& path, int segment,
                       std::vector<Crossing>& crossings, std::vector<FacetBefore>& facets) {
   const double near = segment * path.step;
-  const glm::dvec2 d = path.direction;
-  const glm::dvec2 p = path.origin + near * d - glm::dvec2(window_corner(path, segment, 1));
+  const glm::dvec2 d = path.direction, p = segment_begin(path, segment);
   const double first = segment == 0 ? kOverlap : -kOverlap;
   LineFamily columns(p.x, d.x, first), rows(p.y, d.y, first), diagonals(p.x + p.y, d.x + d.y, first);
   const int pitch = static_cast<int>(field.heights.pitch);
 
-  for (bool own_facet = segment == 0 && path.starts_in_facet;; own_facet = false) {
-    const double t = std::min({columns.distance, rows.distance, diagonals.distance});
-    if (!(t <= path.step + kOverlap)) return;
+  // The crossing with the given line of a family, t ahead.
+  const auto append = [&](const LineFamily& family, int line, double t) {
     const double x = p.x + t * d.x, y = p.y + t * d.y;
     // Edges by family: along y, along x, and the diagonal from (i, j + 1) to (i + 1, j).
-    int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
-    Crossing crossing;
-    FacetBefore facet;
-    if (t == columns.distance) {
-      i = columns.line;
-      crossing = {j * pitch + i, (j + 1) * pitch + i, static_cast<float>(y - j), 0};
-      facet = {static_cast<int16_t>(d.x > 0 ? i - 1 : i), static_cast<int16_t>(j), d.x > 0};
-      columns.advance();
-    } else if (t == rows.distance) {
-      j = rows.line;
-      crossing = {j * pitch + i, j * pitch + i + 1, static_cast<float>(x - i), 0};
-      facet = {static_cast<int16_t>(i), static_cast<int16_t>(d.y > 0 ? j - 1 : j), d.y > 0};
-      rows.advance();
+    int i = columns.lower_line(), j = rows.lower_line();
+    Crossing crossing{0, 0, 0, static_cast<float>(1 / (near + t))};
+    FacetBefore facet{0, 0, 0, static_cast<float>(t)};
+    if (&family == &columns) {
+      i = line;
+      crossing.a = j * pitch + i;
+      crossing.b = crossing.a + pitch;
+      crossing.fraction = static_cast<float>(y - j);
+      facet.half = d.x > 0;
+      if (d.x > 0) --i;
+    } else if (&family == &rows) {
+      j = line;
+      crossing.a = j * pitch + i;
+      crossing.b = crossing.a + 1;
+      crossing.fraction = static_cast<float>(x - i);
+      facet.half = d.y > 0;
+      if (d.y > 0) --j;
     } else {
-      j = diagonals.line - i - 1;
-      crossing = {(j + 1) * pitch + i, j * pitch + i + 1, static_cast<float>(x - i), 0};
-      facet = {static_cast<int16_t>(i), static_cast<int16_t>(j), d.x + d.y < 0};
-      diagonals.advance();
+      j = line - i - 1;
+      crossing.a = (j + 1) * pitch + i;
+      crossing.b = j * pitch + i + 1;
+      crossing.fraction = static_cast<float>(x - i);
+      facet.half = d.x + d.y < 0;
     }
-    if (own_facet) continue;
-    crossing.inverse_distance = static_cast<float>(1 / (near + t));
+    facet.column = static_cast<int16_t>(i);
+    facet.row = static_cast<int16_t>(j);
     crossings.push_back(crossing);
     facets.push_back(facet);
+  };
+
+  if (segment > 0) {
+    const LineFamily* last = &columns;
+    for (const LineFamily* family : {&rows, &diagonals})
+      if (family->back().distance > last->back().distance) last = family;
+    append(*last, last->back().line, last->back().distance);
+  } else if (!path.starts_in_facet) {
+    const int32_t texel = static_cast<int32_t>(p.y) * pitch + static_cast<int32_t>(p.x);
+    crossings.push_back({texel, texel, 0, HUGE_VALF});
+    facets.push_back({static_cast<int16_t>(p.x), static_cast<int16_t>(p.y), 0, 0});
+  }
+  for (;;) {
+    LineFamily* next = &columns;
+    for (LineFamily* family : {&rows, &diagonals})
+      if (family->distance < next->distance) next = family;
+    if (!(next->distance <= path.step + kOverlap)) return;
+    append(*next, next->line, next->distance);
+    next->move(1);
   }
 }
 

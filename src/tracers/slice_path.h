@@ -21,6 +21,7 @@ struct Crossing {
 struct FacetBefore {
   int16_t column, row;
   int16_t half;  // 0: the facet with the cell's corner (i, j), 1: the other (surface/facets.h)
+  float along;   // of the crossing, from where the segment begins, texels
 };
 
 // First corners of the windows that begin with a segment, by level, relative to the start's cell; wrapped
@@ -40,15 +41,20 @@ SlicePath make_slice_path(const glm::dvec2& origin, double azimuth, bool starts_
 
 SegmentWindows segment_windows(const SliceField& field, const SlicePath& path, int segment);
 
-// Appends the crossings of one segment by distance, both its ends included, and the facets before them; not
-// the start itself. The first segment of a path that starts inside a facet leaves out where it leaves this
-// facet: that lies in the facet's plane.
+// Where a segment begins, from the first corner of its window, texels.
+glm::dvec2 segment_begin(const SlicePath& path, int segment);
+
+// Appends the crossings of one segment by distance, both its ends included, and the facets before them. The
+// first one is where the path enters the facet before the second: the crossing before the segment, the start
+// on a texel, or, for a start inside a facet, where the path leaves this facet. What a receiver sees begins
+// behind it.
 void append_crossings(const SliceField& field, const SlicePath& path, int segment,
                       std::vector<Crossing>& crossings, std::vector<FacetBefore>& facets);
 
 // The paths of one family of receivers (texels, or one half of the cells), with their nearest segments ready.
 struct SlicePaths {
   int azimuths = 0;
+  int azimuths_per_linked = 1;          // links are looked for along every n-th azimuth
   int turns = 0;                        // rotations of the azimuths
   int ready_segments = 0;               // per path
   std::vector<SlicePath> paths;         // [turn · azimuths + azimuth]

@@ -102,7 +102,7 @@ class PathWalk {
                       PacketView& view);
   void find_hits(const SlicePacket& packet, uint32_t azimuth, Lanes& lanes, PacketView& view);
   bool nothing_left(const Lanes& lanes, int segment) const;
-  void hit_strata(const SlicePacket& packet, uint32_t azimuth, int segment, Lanes& lanes, PacketView& view);
+  void hit_strata(const SlicePacket& packet, int segment, Lanes& lanes, PacketView& view);
   template <class Meet>
   void cross_segment(const SlicePacket& packet, int segment, const Lanes& lanes, const Meet& meet);
   uint32_t facet_at(glm::ivec2 corner, const FacetBefore& facet, int lane) const;
@@ -195,23 +195,27 @@ HWY_INLINE int PathWalk::segments_to_skip(const SlicePacket& packet, const Lanes
   return 0;
 }
 
-// Calls meet(part, slope, corner, crossing, facet before it) for every crossing of a segment, by distance.
+// Height of a crossing over the starts. `heights`: at the first corner of the segment's window.
+HWY_INLINE V height_at(const Crossing& crossing, const float* heights, size_t part, const Lanes& lanes) {
+  const V a = hn::LoadU(kF, heights + crossing.a + part * kWidth);
+  const V b = hn::LoadU(kF, heights + crossing.b + part * kWidth);
+  const V along_edge = hn::MulSub(hn::Set(kF, crossing.fraction), hn::Sub(b, a), lanes.rise.part[part]);
+  return hn::Add(hn::Sub(a, lanes.base.part[part]), along_edge);
+}
+
+// Calls meet(part, slope, corner, crossing, facet before it) for every crossing of a segment but its first,
+// by distance. The first one's are right before them in memory.
 template <class Meet>
 HWY_INLINE void PathWalk::cross_segment(const SlicePacket& packet, int segment, const Lanes& lanes,
                                         const Meet& meet) {
   const glm::ivec2 corner = place(packet, segments_.windows(segment).corner[0]);
   const float* heights = field_.heights.at(corner.x, corner.y);
   const SegmentView crossed = segments_.crossings(segment);
-  for (size_t i = 0; i < crossed.crossings.size(); ++i) {
+  for (size_t i = 1; i < crossed.crossings.size(); ++i) {
     const Crossing& crossing = crossed.crossings[i];
-    const V fraction = hn::Set(kF, crossing.fraction), inverse = hn::Set(kF, crossing.inverse_distance);
-    for (size_t p = 0; p < kParts; ++p) {
-      const V a = hn::LoadU(kF, heights + crossing.a + p * kWidth);
-      const V b = hn::LoadU(kF, heights + crossing.b + p * kWidth);
-      const V along_edge = hn::MulSub(fraction, hn::Sub(b, a), lanes.rise.part[p]);
-      meet(p, hn::Mul(hn::Add(hn::Sub(a, lanes.base.part[p]), along_edge), inverse), corner, crossing,
-           crossed.facets[i]);
-    }
+    const V inverse = hn::Set(kF, crossing.inverse_distance);
+    for (size_t p = 0; p < kParts; ++p)
+      meet(p, hn::Mul(height_at(crossing, heights, p, lanes), inverse), corner, crossing, crossed.facets[i]);
   }
 }
 
@@ -258,7 +262,8 @@ HWY_INLINE void PathWalk::find_stretches(const SlicePacket& packet, uint32_t azi
 HWY_INLINE void PathWalk::find_hits(const SlicePacket& packet, uint32_t azimuth, Lanes& lanes,
                                     PacketView& view) {
   const Vectors shift = load(packet.place), per_weight = load(packet.strata_per_weight);
-  const float turn = static_cast<float>(radical_inverse(2, azimuth));
+  const uint32_t linked = azimuth / static_cast<uint32_t>(options_.azimuths_per_linked);
+  const float turn = static_cast<float>(radical_inverse(2, linked));
   strata_.most = 0;
   for (size_t p = 0; p < kParts; ++p) {
     const V sum = hn::Add(shift.part[p], hn::Set(kF, turn));
@@ -276,7 +281,7 @@ HWY_INLINE void PathWalk::find_hits(const SlicePacket& packet, uint32_t azimuth,
       segment += skipped;
       if (skipped > 0) continue;
     }
-    hit_strata(packet, azimuth, segment, lanes, view);
+    hit_strata(packet, segment, lanes, view);
     ++segment;
   }
 }
@@ -295,26 +300,46 @@ HWY_INLINE bool PathWalk::nothing_left(const Lanes& lanes, int segment) const {
   return all;
 }
 
-HWY_INLINE void PathWalk::hit_strata(const SlicePacket& packet, uint32_t azimuth, int segment, Lanes& lanes,
-                                     PacketView& view) {
+HWY_INLINE void PathWalk::hit_strata(const SlicePacket& packet, int segment, Lanes& lanes, PacketView& view) {
+  const SlicePath& path = segments_.path();
+  const V near = broadcast(segment * path.step), zero = hn::Zero(kF), one = hn::Set(kF, 1.0f);
+  const glm::vec2 begin(segment_begin(path, segment)), direction(path.direction);
+  const glm::ivec2 window = place(packet, segments_.windows(segment).corner[0]);
+  const float* heights = field_.heights.at(window.x, window.y);
   cross_segment(
       packet, segment, lanes,
       [&](size_t p, V slope, const glm::ivec2& corner, const Crossing& crossing,
-          const FacetBefore& before) HWY_ATTR {
-        const auto met = hn::Ge(slope, lanes.slope.part[p]);
+          const FacetBefore& facet) HWY_ATTR {
+        auto met = hn::Ge(slope, lanes.slope.part[p]);
         if (hn::AllFalse(kF, met)) return;
-        alignas(64) float high[kWidth], next[kWidth];
-        hn::Store(slope, kF, high);
-        hn::Store(lanes.slope.part[p], kF, next);
-        for_each_lane(met, [&](size_t l) {
-          const size_t lane = p * kWidth + l;
-          const uint32_t facet = facet_at(corner, before, static_cast<int>(lane));
-          for (; next[l] <= high[l]; next[l] = strata_.slope[next_stratum_[lane]][lane]) {
-            const float weight = strata_.weight[next_stratum_[lane]++][lane];
-            view.hits[lane].push_back({facet, weight, next[l], high[l], crossing.inverse_distance, azimuth});
-          }
-        });
-        lanes.slope.part[p] = hn::Load(kF, next);
+        const Crossing& entry = (&crossing)[-1];
+        const V entered = hn::Set(kF, (&facet)[-1].along), left = hn::Set(kF, facet.along);
+        // Heights over the start where the path enters the facet and where it leaves it.
+        const V near_height = height_at(entry, heights, p, lanes), near_distance = hn::Add(near, entered);
+        const V far_height = height_at(crossing, heights, p, lanes), far_distance = hn::Add(near, left);
+        do {
+          // How far a ray is above the facet where it enters, and below it where it leaves.
+          const V next = lanes.slope.part[p];
+          const V above = hn::Max(zero, hn::MulSub(next, near_distance, near_height));
+          const V below = hn::Max(hn::Set(kF, 1e-30f), hn::NegMulAdd(next, far_distance, far_height));
+          const V along = hn::MulAdd(hn::Div(above, hn::Add(above, below)), hn::Sub(left, entered), entered);
+          const V distance = hn::Mul(hn::Add(near, along), hn::Sqrt(hn::MulAdd(next, next, one)));
+          alignas(64) float slopes[kWidth], alongs[kWidth], distances[kWidth];
+          hn::Store(next, kF, slopes);
+          hn::Store(along, kF, alongs);
+          hn::Store(distance, kF, distances);
+          for_each_lane(met, [&](size_t l) {
+            const size_t lane = p * kWidth + l;
+            const size_t stratum = next_stratum_[lane]++;
+            const glm::vec2 in_cell = begin + alongs[l] * direction - glm::vec2(facet.column, facet.row);
+            const glm::vec2 uv = facet.half == 0 ? in_cell : 1.0f - in_cell;
+            view.hits[lane].push_back({facet_at(corner, facet, static_cast<int>(lane)),
+                                       strata_.weight[stratum][lane], uv.x, uv.y, distances[l]});
+            slopes[l] = strata_.slope[stratum + 1][lane];
+          });
+          lanes.slope.part[p] = hn::Load(kF, slopes);
+          met = hn::Ge(slope, lanes.slope.part[p]);
+        } while (!hn::AllFalse(kF, met));
       });
 }
 
@@ -350,7 +375,11 @@ void walk_all(const SliceField& field, const SlicePaths& paths, const WalkOption
         turn = packets[index].turn;
         walk.begin_path(paths.path_index(turn, azimuth));
       }
-      walk.walk<kWhat>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
+      if (kWhat == WalkFor::kHits && azimuth % options.azimuths_per_linked != 0) {
+        walk.walk<WalkFor::kSky>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
+      } else {
+        walk.walk<kWhat>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
+      }
     }
   }
 }

@@ -16,7 +16,7 @@ template <class T>
 using LaneArray = std::array<T, kSliceLanes>;
 
 // Most samples for links of a slice that holds the mean share of its receiver's hemisphere.
-inline constexpr int kStrataPerSlice = 12;
+inline constexpr int kStrataPerSlice = 8;
 
 // Receivers side by side: lane l starts in the cell (x + l, y).
 struct SlicePacket {
@@ -45,14 +45,12 @@ struct Stretch {
   uint32_t azimuth;
 };
 
-// A piece of facet that a receiver sees at one slope of an azimuth, standing for the slopes around it.
+// A point of a facet that a receiver sees at one slope of an azimuth, standing for the slopes around it.
 struct SliceHit {
   uint32_t facet;
-  float weight;            // ∫ cosine to the receiver's normal, over normal.z, as in SliceSums
-  float slope;             // at which it is seen
-  float high;              // slope of where the path leaves the facet
-  float inverse_distance;  // 1 / horizontal distance of that place, 1/texels
-  uint32_t azimuth;
+  float weight;    // ∫ cosine to the receiver's normal, over normal.z, as in SliceSums
+  float u, v;      // where on the facet (surface/facets.h); to rounding within 0..1
+  float distance;  // along the ray, texels
 };
 
 // What every lane of a packet sees.
@@ -64,11 +62,20 @@ struct PacketView {
   LaneArray<uint32_t> cut_short{};
 };
 
+// Keeps the memory of hits and stretches.
+inline void clear(PacketView& view) {
+  view.hemisphere = view.sky = {};
+  view.cut_short = {};
+  for (auto& hits : view.hits) hits.clear();
+  for (auto& stretches : view.stretches) stretches.clear();
+}
+
 // What a walk is for, besides the sky: a sample of what is seen below the horizon, or all of it.
 enum class WalkFor { kSky, kHits, kStretches };
 
 struct WalkOptions {
   WalkFor what = WalkFor::kSky;
+  int azimuths_per_linked = 1;  // hits are sampled along every n-th azimuth only
   double max_distance =
       std::numeric_limits<double>::infinity();  // horizontal, texels: no need to go on beyond
 };

@@ -16,6 +16,10 @@ namespace {
 // Without links texels are traced in tiles of this size: what a tile's receivers meet stays in the cache.
 constexpr uint32_t kTileWidth = 64, kTileHeight = 16;
 
+// Blocks of patches are traced together, as many as leave every thread enough to do: the same node of many
+// facets sees along the same paths.
+constexpr uint32_t kMostBlocksTogether = 16, kFewestPieces = 32;
+
 void check_row(uint32_t index, const Row& row) {
   // Up to 2: the march with published weights in a narrow cone.
   if (!(row.direct_over_pi >= 0 && row.direct_over_pi <= 2))
@@ -31,26 +35,29 @@ TracerCounts sum(const std::vector<TracerCounts>& counts) {
   return total;
 }
 
-// Traces rows [0, row_count) block by block: neighbours that the tracer may answer together; store(index,
-// row) keeps what the caller wants of each.
+// Traces rows [0, row_count), `together` blocks at once: neighbours that the tracer may answer together;
+// store(index, row) keeps what the caller wants of each.
 template <class TraceRows, class Store>
-TracerCounts trace_blocks(uint32_t row_count, Links& links, Progress& progress, const TraceRows& trace_rows,
-                          const Store& store) {
-  const size_t block_count = (row_count + Links::kRowsPerBlock - 1) / Links::kRowsPerBlock;
-  std::vector<TracerCounts> counts(block_count);
-  parallel_for(block_count, 1, [&](size_t first_block, size_t last_block) {
-    std::vector<Row> rows(Links::kRowsPerBlock);
-    for (size_t b = first_block; b < last_block; ++b) {
-      const uint32_t begin = static_cast<uint32_t>(b) * Links::kRowsPerBlock;
-      const std::span<Row> block_rows(rows.data(), std::min(Links::kRowsPerBlock, row_count - begin));
-      trace_rows(begin, block_rows, counts[b]);
-      for (uint32_t i = 0; i < block_rows.size(); ++i) {
-        check_row(begin + i, block_rows[i]);
-        store(begin + i, block_rows[i]);
-        append_row(links.blocks[b], block_rows[i].links);
+TracerCounts trace_blocks(uint32_t row_count, uint32_t together, Links& links, Progress& progress,
+                          const TraceRows& trace_rows, const Store& store) {
+  const uint32_t rows_together = together * Links::kRowsPerBlock;
+  const size_t pieces = (size_t{row_count} + rows_together - 1) / rows_together;
+  std::vector<TracerCounts> counts(pieces);
+  parallel_for(pieces, 1, [&](size_t first_piece, size_t last_piece) {
+    std::vector<Row> rows(std::min(rows_together, row_count));
+    for (size_t piece = first_piece; piece < last_piece; ++piece) {
+      const uint32_t begin = static_cast<uint32_t>(piece) * rows_together;
+      const std::span<Row> piece_rows(rows.data(), std::min(rows_together, row_count - begin));
+      trace_rows(begin, piece_rows, counts[piece]);
+      for (uint32_t i = 0; i < piece_rows.size(); ++i) {
+        check_row(begin + i, piece_rows[i]);
+        store(begin + i, piece_rows[i]);
+        const size_t block = (begin + i) / Links::kRowsPerBlock;
+        append_row(links.blocks[block], piece_rows[i].links);
+        if ((begin + i + 1) % Links::kRowsPerBlock == 0 || begin + i + 1 == row_count)
+          finish_block(links, block);
       }
-      finish_block(links, b);
-      progress.advance(block_rows.size());
+      progress.advance(piece_rows.size());
     }
   });
   return sum(counts);
@@ -110,17 +117,19 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
   }
   seen.gather = make_links(texels, patch_count, spill);
   seen.counts = trace_blocks(
-      texels, seen.gather, progress,
+      texels, 1, seen.gather, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_texels(first, true, rows, counts);
       },
       store_texel);
   if (!trace_patches) return seen;
 
+  const uint32_t blocks = patch_count / Links::kRowsPerBlock;
+  const uint32_t together = std::clamp(blocks / kFewestPieces, 1u, kMostBlocksTogether);
   seen.patches = make_links(patch_count, patch_count, spill);
   seen.patch_direct_over_pi.resize(patch_count);
   const TracerCounts of_patches = trace_blocks(
-      patch_count, seen.patches, progress,
+      patch_count, together, seen.patches, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_patches(first, true, rows, counts);
       },

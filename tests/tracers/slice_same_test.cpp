@@ -53,6 +53,50 @@ TEST(SliceSame, EveryInstructionSetSeesTheSame) {
   EXPECT_GT(targets, 0);
 }
 
+// A thin pillar on flat ground blocks one or two azimuths of most nodes, or none. Wherever it does there are
+// links, along whichever azimuths it was met, and E₀ is not changed by looking for them.
+TEST(SliceSame, NodesThatSeeOnePillarLinkToIt) {
+  Grid<float> heights(40, 40, 0.0f);
+  heights(20, 20) = 1;
+  const Surface surface = make_surface(std::move(heights), 1, 0.5, Edge::kOpen);
+  const auto tracer = make_slice_tracer(surface, azimuths(16));
+  Row with, without;
+  TracerCounts counts;
+  int blocked = 0;
+  for (uint32_t patch = 0; patch < tracer->patches().count; patch += 5) {
+    tracer->trace_patch(patch, true, with, counts);
+    tracer->trace_patch(patch, false, without, counts);
+    EXPECT_NEAR(with.direct_over_pi, without.direct_over_pi, 1e-4) << patch;
+    EXPECT_EQ(with.links.empty(), with.direct_over_pi == 1) << patch;
+    if (!with.links.empty()) ++blocked;
+  }
+  EXPECT_GT(blocked, 100);
+}
+
+// Another seed is another set of azimuths: nothing of the noise is shared, or it could not be told from two.
+TEST(SliceSame, SeedsAreIndependent) {
+  const Surface surface = white_noise_surface(48, 40, 0.1);
+  const auto tracer = make_slice_tracer(surface, azimuths(16));
+  const auto look_again = [&](uint64_t seed) {
+    return trace_surface(*tracer->reseeded(seed), 48, 40, Patches::kFacets, true);
+  };
+  const Visibility truth = look(surface, azimuths(512), true), first = look_again(1), second = look_again(2);
+  // The correlation of two independent errors of n values is 0 ± 1/√n; packets of 16 share their azimuths.
+  const auto expect_uncorrelated = [](const std::vector<float>& a, const std::vector<float>& b,
+                                      const std::vector<float>& right) {
+    double ab = 0, aa = 0, bb = 0;
+    for (size_t i = 0; i < right.size(); ++i) {
+      const double x = static_cast<double>(a[i] - right[i]), y = static_cast<double>(b[i] - right[i]);
+      ab += x * y;
+      aa += x * x;
+      bb += y * y;
+    }
+    EXPECT_LT(std::abs(ab) / std::sqrt(aa * bb), 4 / std::sqrt(static_cast<double>(right.size()) / 16));
+  };
+  expect_uncorrelated(first.direct_over_pi.values, second.direct_over_pi.values, truth.direct_over_pi.values);
+  expect_uncorrelated(first.patch_direct_over_pi, second.patch_direct_over_pi, truth.patch_direct_over_pi);
+}
+
 // What a tile of texels sees is what its texels see one by one: tiles cut off at both borders.
 TEST(SliceSame, TilesSeeWhatTexelsSee) {
   const Surface surface = white_noise_surface(77, 35, 0.2);

@@ -1,0 +1,102 @@
+#include "tracers/slice_families.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/constants.h"
+#include "sampling/low_discrepancy.h"
+#include "sampling/warp.h"
+
+namespace hemibake {
+namespace {
+
+constexpr uint64_t kTurn = 0x511ce08, kNodeShift = 0x511ce02;
+
+// Paths of a family: azimuths times rotations. With fewer azimuths more rotations, so that all receivers
+// together see the whole circle; with more rotations fewer packets share a path. The families of nodes are
+// rotated apart.
+constexpr int kTexelPaths = 512, kNodePaths = 64;
+// Segments kept ready in a family, about 650 bytes each. There is one family of texels and 42 of nodes.
+constexpr int kReadyTexelSegments = 16384, kReadyNodeSegments = 1024;
+
+// A node looks for links along every third of its azimuths. What it sees of the sky is the light of its
+// patch, and few nodes next to a texel make most of its first bounce; its links only lead to many others.
+constexpr int kNodeAzimuthsPerLinked = 3;
+
+// Azimuths along which a node looks for links: five at least, or some in a deep fold would only meet each
+// other and keep their light for ever; odd, as three times as many are, since an odd number also integrates
+// the cosine weight of a tilted facet well (its odd harmonics above the first vanish).
+int linked_azimuths_of_node(int azimuths) { return std::max(5, azimuths / 16 | 1); }
+
+// Where in its share of the circle a turn begins, 0..1: at random, but nowhere near an eighth, so that no
+// path runs exactly along the grid or a diagonal. On a wrapping map such a path meets the same few texels for
+// ever, and is followed to the far limit where the highest one is not among them.
+double turn_offset(uint64_t seed, uint64_t family) {
+  const double random = unit_interval(mix_bits(seed, kTurn, family)), eighth = std::floor(8 * random);
+  return (eighth + 0.25 + 0.5 * (8 * random - eighth)) / 8;
+}
+
+// Calls add(turn, azimuth, angle) for every path of a family.
+template <class Add>
+SlicePaths make_paths(int azimuths, int wanted_paths, double offset, const Add& make_path) {
+  SlicePaths family;
+  family.azimuths = azimuths;
+  family.turns = std::max(1, wanted_paths / azimuths);
+  for (int turn = 0; turn < family.turns; ++turn)
+    for (int azimuth = 0; azimuth < azimuths; ++azimuth)
+      family.paths.push_back(
+          make_path(turn, azimuth, 2 * kPi * (azimuth + (turn + offset) / family.turns) / azimuths));
+  return family;
+}
+
+void make_ready(const SliceField& field, int segments, SlicePaths& family) {
+  prepare_segments(field, std::max(1, segments / static_cast<int>(family.paths.size())), family);
+}
+
+SlicePaths make_texel_paths(const SliceField& field, int azimuths, uint64_t seed) {
+  SlicePaths family = make_paths(azimuths, kTexelPaths, turn_offset(seed, 0), [](int, int, double angle) {
+    return make_slice_path({0, 0}, angle, false);
+  });
+  make_ready(field, kReadyTexelSegments, family);
+  return family;
+}
+
+// Each azimuth starts from another low-discrepancy point of the small copy of the facet at the node.
+SlicePaths make_node_paths(const SliceField& field, int azimuths, uint64_t seed, int k, uint32_t half,
+                           uint32_t node) {
+  const auto make_path = [&](int turn, int azimuth, double angle) {
+    const uint64_t place = 2 * static_cast<uint64_t>(turn);
+    const double shift_u = unit_interval(mix_bits(seed, kNodeShift, place));
+    const double shift_v = unit_interval(mix_bits(seed, kNodeShift, place + 1));
+    const uint32_t index = static_cast<uint32_t>(azimuth);
+    const glm::dvec2 point = sample_uniform_triangle({shift_modulo_one(radical_inverse(2, index), shift_u),
+                                                      shift_modulo_one(radical_inverse(3, index), shift_v)});
+    const glm::dvec2 uv = node_start_uv(k, node, point);
+    return make_slice_path(half == 0 ? uv : 1.0 - uv, angle, true);
+  };
+  SlicePaths family = make_paths(kNodeAzimuthsPerLinked * linked_azimuths_of_node(azimuths), kNodePaths,
+                                 turn_offset(seed, 1 + node_family(k, half, node)), make_path);
+  family.azimuths_per_linked = kNodeAzimuthsPerLinked;
+  make_ready(field, kReadyNodeSegments, family);
+  return family;
+}
+
+}  // namespace
+
+SliceFamilies make_slice_families(const SliceField& field, int azimuths, Patches patches, uint64_t seed) {
+  SliceFamilies families;
+  families.texels = make_texel_paths(field, azimuths, seed);
+  if (patches != Patches::kFacets) return families;
+  for (const int k : {kCoarseSubdivision, kFineSubdivision})
+    for (uint32_t half = 0; half < 2; ++half)
+      for (uint32_t node = 0; node < node_count(k); ++node)
+        families.nodes.push_back(make_node_paths(field, azimuths, seed, k, half, node));
+  return families;
+}
+
+size_t node_family(int k, uint32_t half, uint32_t node) {
+  const uint32_t coarser = k == kFineSubdivision ? 2 * node_count(kCoarseSubdivision) : 0;
+  return coarser + half * node_count(k) + node;
+}
+
+}  // namespace hemibake
