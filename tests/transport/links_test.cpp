@@ -163,6 +163,15 @@ TEST(Links, RowsWithoutASumStoreNothing) {
   expect_packed_well({{9, 0.5f}}, pack_and_unpack({{7, -1e-9f}, {9, 0.5f}}, 100));
 }
 
+// In a deep pit: what little leads out of it counts.
+TEST(Links, SmallLinksBesideAVeryLargeOneStay) {
+  const std::vector<Link> row{{1, 0.9931f}, {2, 0.0011f}, {5, 0.0017f}};
+  const std::vector<Link> packed = pack_and_unpack(row, 100);
+  ASSERT_EQ(packed.size(), row.size());
+  // A quantum is less than 1/4096 of their sum.
+  for (size_t i = 0; i < row.size(); ++i) EXPECT_NEAR(packed[i].weight, row[i].weight, 1.0f / 4096);
+}
+
 TEST(Links, WhatIsNoRowIsABug) {
   Links links = make_links(5, 100);
   const auto append = [&](const std::vector<Link>& row) { append_row(links.blocks[0], row); };
