@@ -74,6 +74,10 @@ void add_pilot(const Pilot& pilot, uint32_t count, BakePlan& plan) {
   plan.rays += static_cast<uint64_t>(std::llround(static_cast<double>(pilot.rays) * scale));
   plan.links += static_cast<uint64_t>(std::llround(pilot.links.mean * count));
   plan.link_bytes += static_cast<size_t>((pilot.links.mean + error) * pilot.bytes_per_link * count);
+  // Blocks being made, one per thread: the rows as traced, collected, and as numbers on their way.
+  constexpr size_t kBytesPerOpenLink = 40;
+  plan.plane_bytes += static_cast<size_t>(thread_count()) * Links::kRowsPerBlock * kBytesPerOpenLink *
+                      static_cast<size_t>(pilot.links.mean + 4 * pilot.links.stddev());
   plan.trace_cpu_seconds += pilot.cpu_seconds * scale;
 }
 
@@ -83,12 +87,13 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
   const size_t texels = surface.texel_count();
   BakePlan plan;
   plan.surface_bytes = texels * 16 + options.scene_bytes;
-  // α, E₀/π and the bent normal; then every bounce, total and residual as planes, and four vectors of doubles
-  // under way for texels and patches.
+  // α, E₀/π and the bent normal; then every bounce, total and residual as planes; under way, four vectors of
+  // doubles for texels; for patches their direct light, a copy of the light in float, and three vectors of
+  // doubles twice, in the bounces and in the estimate of errors: the allocator keeps the first three.
   plan.plane_bytes = texels * (20 + 4 * static_cast<size_t>(options.kept_planes));
   if (options.with_links) {
     const size_t patches = make_patches(surface, options.patches).count;
-    plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 3) + 32) + patches * 36;
+    plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 3) + 32) + patches * 56;
     // Light and residual of the solver, and the four directions it keeps.
     if (options.converges) plan.plane_bytes += texels * 8 + patches * 8 * (2 + 2 * 4);
   }
