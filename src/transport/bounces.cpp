@@ -151,6 +151,22 @@ void converge(Flow& flow, const BounceOptions& options, Bounces& result, std::ve
 
 }  // namespace
 
+void settle_residual(const std::function<double(size_t)>& total_over_pi, int width, int height,
+                     Bounces& result) {
+  result.residual = Grid<float>(width, height);
+  Moments residuals;
+  for (size_t i = 0; i < result.residual.size(); ++i) {
+    const double left = 1 - total_over_pi(i);
+    result.residual[i] = static_cast<float>(left);
+    residuals.add(left);
+    if (i == 0 || left > result.worst_residual) {
+      result.worst_residual = left;
+      result.worst_texel = static_cast<uint32_t>(i);
+    }
+  }
+  result.mean_residual = residuals.mean;
+}
+
 Bounces bounce_light(const Visibility& seen, const BounceOptions& options) {
   const int width = seen.direct_over_pi.width, height = seen.direct_over_pi.height;
   Bounces result;
@@ -179,18 +195,7 @@ Bounces bounce_light(const Visibility& seen, const BounceOptions& options) {
   }
 
   result.total = times_pi(total, width, height);
-  result.residual = Grid<float>(width, height);
-  Moments residuals;
-  for (size_t i = 0; i < total.size(); ++i) {
-    const double left = 1 - total[i];
-    result.residual[i] = static_cast<float>(left);
-    residuals.add(left);
-    if (i == 0 || left > result.worst_residual) {
-      result.worst_residual = left;
-      result.worst_texel = static_cast<uint32_t>(i);
-    }
-  }
-  result.mean_residual = residuals.mean;
+  settle_residual([&](size_t i) { return total[i]; }, width, height, result);
   if (options.converge_tolerance) name_short_texels(seen, *options.converge_tolerance, result);
   return result;
 }

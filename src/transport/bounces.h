@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -32,5 +33,9 @@ struct Bounces {
 };
 
 Bounces bounce_light(const Visibility& seen, const BounceOptions& options);
+
+// The residual of every texel, their mean and the worst, from the sum of a texel's light over π.
+void settle_residual(const std::function<double(size_t)>& total_over_pi, int width, int height,
+                     Bounces& result);
 
 }  // namespace hemibake

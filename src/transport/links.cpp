@@ -86,7 +86,7 @@ void finish_block(Links& links, size_t index) {
   block = pack_block(*block.open);
   if (!links.spill) return;
   block.spilled = links.spill->store({std::span<const std::byte>(block.packed)});
-  block.packed = {};
+  block.packed = std::vector<std::byte>();  // `= {}` would keep the memory
 }
 
 void finish_blocks(Links& links) {

@@ -10,6 +10,9 @@ namespace hemibake {
 namespace {
 
 constexpr double kFinenessPerSum = 200, kLeastFineness = 12, kMostFineness = 64;
+// Multiples of a row that one link has more than half of: light in a deep pit leaves it by the others,
+// however small they are.
+constexpr double kDominatedFineness = 4096;
 constexpr int kFewestWeightBits = 2, kMostWeightBits = 12;
 
 std::span<const Link> open_row(const OpenRows& open, size_t row) {
@@ -72,7 +75,7 @@ void round_multiples(std::span<const Link> row, double quantum, double total, st
 
 // Weights as multiples of the quantum returned.
 float round_weights(std::span<const Link> row, std::span<uint32_t> multiples) {
-  double sum = 0, positive = 0, least = std::numeric_limits<double>::infinity();
+  double sum = 0, positive = 0, largest = 0, least = std::numeric_limits<double>::infinity();
   size_t count = 0;
   for (const Link& link : row) {
     const double weight = static_cast<double>(link.weight);
@@ -80,6 +83,7 @@ float round_weights(std::span<const Link> row, std::span<uint32_t> multiples) {
     if (weight <= 0) continue;
     positive += weight;
     least = std::min(least, weight);
+    largest = std::max(largest, weight);
     ++count;
   }
   std::ranges::fill(multiples, 0);
@@ -87,8 +91,9 @@ float round_weights(std::span<const Link> row, std::span<uint32_t> multiples) {
   if (const uint64_t total = whole_multiples(row, least, multiples))
     return static_cast<float>(sum / static_cast<double>(total));
   const double links = static_cast<double>(count);
-  const double total = std::ceil(
+  double total = std::ceil(
       std::clamp(kFinenessPerSum * sum * std::sqrt(links), kLeastFineness * links, kMostFineness * links));
+  if (largest > positive / 2) total = std::max(total, kDominatedFineness);
   round_multiples(row, positive / total, total, multiples);
   return static_cast<float>(sum / std::accumulate(multiples.begin(), multiples.end(), 0.0));
 }

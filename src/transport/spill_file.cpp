@@ -20,6 +20,9 @@ namespace {
 // file then lies in one piece however it grows.
 constexpr size_t kMostBytes = size_t{1} << 44;
 constexpr size_t kAlignment = 64;
+// Reading a page maps the others of the same 64 KiB that the system holds (Linux, "fault around"): they have
+// to go with it, or released bytes come back with their neighbours.
+constexpr uintptr_t kMappedTogether = uintptr_t{64} << 10;
 
 [[noreturn]] void fail(const std::filesystem::path& folder, const char* what) {
   throw InputError(
@@ -72,9 +75,9 @@ const std::byte* SpillFile::store(std::initializer_list<std::span<const std::byt
 }
 
 void SpillFile::release(const std::byte* bytes, size_t size) {
-  const auto page = static_cast<uintptr_t>(sysconf(_SC_PAGE_SIZE));
-  const uintptr_t begin = reinterpret_cast<uintptr_t>(bytes) / page * page;
-  const uintptr_t end = reinterpret_cast<uintptr_t>(bytes) + size;
+  const uintptr_t begin = reinterpret_cast<uintptr_t>(bytes) / kMappedTogether * kMappedTogether;
+  const uintptr_t last = reinterpret_cast<uintptr_t>(bytes) + size;
+  const uintptr_t end = (last + kMappedTogether - 1) / kMappedTogether * kMappedTogether;
   madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
 }
 

@@ -23,7 +23,8 @@ class SpillFile {
   // number. Any thread. Throws InputError where the disk is full.
   const std::byte* store(std::initializer_list<std::span<const std::byte>> parts);
 
-  // Says that these bytes are not needed for the time being; reading them again is slower but right.
+  // Says that these bytes, and those near them, are not needed for the time being; reading them again is
+  // slower but right.
   static void release(const std::byte* bytes, size_t size);
 
  private:

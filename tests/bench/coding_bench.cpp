@@ -88,7 +88,7 @@ void trace_rows(uint32_t count, const Trace& trace, Rows& rows, std::vector<doub
       rows.begin.push_back(rows.links.size());
       if (direct) direct->push_back(static_cast<double>(static_cast<float>(row.direct_over_pi)));
     }
-    batch = {};
+    batch = std::vector<Row>();
   }
 }
 

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <thread>
 
@@ -57,17 +58,29 @@ void expect_same_links(const Links& a, const Links& b) {
   EXPECT_EQ(a.rows, b.rows);
   EXPECT_EQ(a.columns, b.columns);
   ASSERT_EQ(a.blocks.size(), b.blocks.size());
+  uint32_t rounded_again = 0;
   for (size_t i = 0; i < a.blocks.size(); ++i) {
     BlockRows rows_a, rows_b;
     unpack_block(a.blocks[i], rows_a);
     unpack_block(b.blocks[i], rows_b);
     EXPECT_EQ(rows_a.row_begin, rows_b.row_begin);
     EXPECT_EQ(rows_a.patches, rows_b.patches);
-    // Packed again they are multiples of what they were multiples of, within 10⁻⁴ of it (links_pack.cpp).
+    // Packed again most rows are multiples of what they were multiples of, within 10⁻⁴ of it; few that lost
+    // links are rounded again, by less than a twelfth of their mean weight (links_pack.cpp).
     ASSERT_EQ(rows_a.weights.size(), rows_b.weights.size());
-    for (size_t k = 0; k < rows_a.weights.size(); ++k)
-      EXPECT_NEAR(rows_a.weights[k], rows_b.weights[k], 1e-4f * rows_a.weights[k]);
+    for (size_t row = 0; row + 1 < rows_a.row_begin.size(); ++row) {
+      const size_t begin = rows_a.row_begin[row], end = rows_a.row_begin[row + 1];
+      const float sum = std::accumulate(rows_a.weights.begin() + static_cast<std::ptrdiff_t>(begin),
+                                        rows_a.weights.begin() + static_cast<std::ptrdiff_t>(end), 0.0f);
+      bool same = true;
+      for (size_t k = begin; k < end; ++k) {
+        same = same && std::abs(rows_a.weights[k] - rows_b.weights[k]) < 1e-4f * rows_a.weights[k];
+        EXPECT_NEAR(rows_a.weights[k], rows_b.weights[k], sum / (12 * static_cast<float>(end - begin)));
+      }
+      rounded_again += !same;
+    }
   }
+  EXPECT_LE(rounded_again, a.rows / 500);
 }
 
 TEST(LinksFile, RoundTripOverSeveralBlocks) {

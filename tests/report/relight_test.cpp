@@ -71,7 +71,7 @@ class RelightWall : public testing::Test {
 };
 
 // The bar: a map of one value against ρᵇ E_b. Bounces are stored as floats, and every product rounds to float
-// what it multiplies: 2⁻²⁴ of each, or of the smallest normal one.
+// what it multiplies: 2⁻²⁴ of each; below the smallest normal one they are 0.
 TEST_F(RelightWall, ConstantMapIsPowersOfAlbedo) {
   const glm::vec3 albedo(0.9f, 0.6f, 0);
   const Relit powers = relight_constant(bounce_light(seen(), {}).irradiance, albedo);
@@ -84,8 +84,8 @@ TEST_F(RelightWall, ConstantMapIsPowersOfAlbedo) {
     for (size_t i = 0; i < powers.total.size(); ++i)
       for (int c = 0; c < 3; ++c)
         ASSERT_NEAR(over_links.bounces[b][i][c], powers.bounces[b][i][c],
-                    (4 + static_cast<float>(b)) * 0x1p-24f *
-                        std::max(powers.bounces[b][i][c], std::numeric_limits<float>::min()))
+                    (4 + static_cast<float>(b)) * 0x1p-24f * powers.bounces[b][i][c] +
+                        std::numeric_limits<float>::min())
             << b << ' ' << i;
   // The rest after bounce 20 doubles as much of the last two as 1/(1−q)² is: q is below 0.9 here.
   for (size_t i = 0; i < powers.total.size(); ++i)
