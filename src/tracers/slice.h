@@ -10,7 +10,7 @@
 // texel and four in one of a node, and each stratum gives its cosine weight, in closed form, to what lies at
 // one elevation within it, drawn in proportion to the cosine and well spread over the azimuths. Measured, on
 // WallHeight at 0.1 m and smooth shapes at 0.45 m with 64 azimuths, E₁ is then off by a tenth more than with
-// twelve strata, and by a fifth more than with 24, at two and a half times the links.
+// twelve strata, and by a seventh more than with 24, which are more than twice the links.
 //
 // A node sees the sky along three times as many azimuths as it looks for links along. Few nodes next to a
 // texel make most of its first bounce, and their light is what they see of the sky; their links only lead on,

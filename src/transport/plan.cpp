@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "core/parallel.h"
 #include "core/statistics.h"
@@ -13,46 +15,62 @@
 namespace hemibake {
 namespace {
 
-constexpr uint32_t kPilotRows = 512;
+// Neighbouring patches are the same node of one run: more groups, to know how many facets are cut finely.
+constexpr uint32_t kTexelGroups = 64, kPatchGroups = 512, kGroupRows = 16;
 constexpr uint64_t kPilotStream = 100;
 // Seconds a link takes in a bounce: measured 1–2 ns where the light under way fits the cache.
 constexpr double kSecondsPerLink = 2e-9;
 
 struct Pilot {
-  Moments links;              // of a row
+  Moments links;  // of a row, mean over a group
+  uint32_t rows = 0;
   double bytes_per_link = 0;  // all in
   uint64_t rays = 0;
   double cpu_seconds = 0;
 };
 
-// Rows spread over [0, count), one at random in each of equal strata (a fixed step would meet the same
-// columns of the map again and again), traced on this thread.
-template <class TraceRow>
-Pilot trace_pilot(uint32_t count, uint32_t columns, const TraceRow& trace_row) {
+// Groups of kGroupRows neighbours, which a tracer may answer together, spread over [0, count): one at random
+// in each of equal strata (a fixed step would meet the same columns of the map again and again), traced on
+// this thread. trace_rows(first, rows, counts) as Tracer::trace_texels.
+template <class TraceRows>
+Pilot trace_pilot(uint32_t count, uint32_t columns, uint32_t most_groups, const TraceRows& trace_rows) {
   Pilot pilot;
-  Row row;
   TracerCounts counts;
-  const uint32_t rows = std::min(count, kPilotRows);
-  Links links = make_links(rows, columns);
+  std::vector<Row> rows(std::min(count, kGroupRows));
+  const uint32_t all_groups = (count + kGroupRows - 1) / kGroupRows,
+                 groups = std::min(all_groups, most_groups);
+  std::vector<uint32_t> firsts;
+  for (uint32_t i = 0; i < groups; ++i) {
+    const double place = (i + unit_interval(mix_bits(0, kPilotStream, i))) / groups;
+    firsts.push_back(std::min(all_groups - 1, static_cast<uint32_t>(place * all_groups)) * kGroupRows);
+    pilot.rows += std::min(kGroupRows, count - firsts.back());
+  }
+  Links links = make_links(pilot.rows, columns);
+  uint32_t next_row = 0;
+  uint64_t traced_links = 0;
   const double start = process_cpu_seconds();
-  for (uint32_t i = 0; i < rows; ++i) {
-    const double place = (i + unit_interval(mix_bits(0, kPilotStream, i))) / rows;
-    const uint32_t receiver = std::min(count - 1, static_cast<uint32_t>(place * count));
-    trace_row(receiver, row, counts);
-    append_row(links.blocks[i / Links::kRowsPerBlock], row.links);
-    pilot.links.add(static_cast<double>(row.links.size()));
+  for (const uint32_t first : firsts) {
+    const std::span<Row> group(rows.data(), std::min(kGroupRows, count - first));
+    trace_rows(first, group, counts);
+    uint64_t group_links = 0;
+    for (const Row& row : group) {
+      append_row(links.blocks[next_row++ / Links::kRowsPerBlock], row.links);
+      group_links += row.links.size();
+    }
+    traced_links += group_links;
+    pilot.links.add(static_cast<double>(group_links) / static_cast<double>(group.size()));
   }
   finish_blocks(links);
-  if (pilot.links.mean > 0)
-    pilot.bytes_per_link = static_cast<double>(links.stored_bytes()) / (pilot.links.mean * rows);
+  if (traced_links > 0)
+    pilot.bytes_per_link = static_cast<double>(links.stored_bytes()) / static_cast<double>(traced_links);
   pilot.cpu_seconds = process_cpu_seconds() - start;
   pilot.rays = counts.rays;
   return pilot;
 }
 
 void add_pilot(const Pilot& pilot, uint32_t count, BakePlan& plan) {
-  const double rows = static_cast<double>(pilot.links.count), scale = count / rows;
-  const double error = 4 * pilot.links.stddev() / std::sqrt(rows);
+  const double scale = static_cast<double>(count) / pilot.rows;
+  const double error = 4 * pilot.links.stddev() / std::sqrt(static_cast<double>(pilot.links.count));
   plan.rays += static_cast<uint64_t>(std::llround(static_cast<double>(pilot.rays) * scale));
   plan.links += static_cast<uint64_t>(std::llround(pilot.links.mean * count));
   plan.link_bytes += static_cast<size_t>((pilot.links.mean + error) * pilot.bytes_per_link * count);
@@ -84,17 +102,17 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
 
 BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptions& options) {
   BakePlan plan = plan_planes(surface, options);
-  const auto of_texels = [&](uint32_t texel, Row& row, TracerCounts& counts) {
-    tracer.trace_texel(texel, options.with_links, row, counts);
+  const auto of_texels = [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
+    tracer.trace_texels(first, options.with_links, rows, counts);
   };
-  add_pilot(trace_pilot(surface.texel_count(), tracer.patches().count, of_texels), surface.texel_count(),
-            plan);
+  add_pilot(trace_pilot(surface.texel_count(), tracer.patches().count, kTexelGroups, of_texels),
+            surface.texel_count(), plan);
   if (options.with_links && options.patches == Patches::kFacets) {
-    const auto of_patches = [&](uint32_t patch, Row& row, TracerCounts& counts) {
-      tracer.trace_patch(patch, true, row, counts);
+    const auto of_patches = [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
+      tracer.trace_patches(first, true, rows, counts);
     };
-    add_pilot(trace_pilot(tracer.patches().count, tracer.patches().count, of_patches), tracer.patches().count,
-              plan);
+    add_pilot(trace_pilot(tracer.patches().count, tracer.patches().count, kPatchGroups, of_patches),
+              tracer.patches().count, plan);
   }
   if (!options.with_links) plan.link_bytes = 0;
   plan.bounce_cpu_seconds = static_cast<double>(plan.links) * options.bounces * kSecondsPerLink;

@@ -40,7 +40,8 @@ struct PlanOptions {
 // Without tracing: all but links and seconds.
 BakePlan plan_planes(const Surface& surface, const PlanOptions& options);
 
-// Adds links and seconds from a pilot of some hundred texels and patches spread over the map.
+// Adds links and seconds from a pilot of a thousand texels and as many patches, in groups spread over the
+// map.
 BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptions& options);
 
 // Memory of this machine, bytes.

@@ -18,7 +18,7 @@ constexpr uint32_t kTileWidth = 64, kTileHeight = 16;
 
 // Blocks of patches are traced together, as many as leave every thread enough to do: the same node of many
 // facets sees along the same paths.
-constexpr uint32_t kMostBlocksTogether = 16, kFewestPieces = 32;
+constexpr uint32_t kMostBlocksTogether = 32, kFewestPieces = 32;
 
 void check_row(uint32_t index, const Row& row) {
   // Up to 2: the march with published weights in a narrow cone.
