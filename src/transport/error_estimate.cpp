@@ -15,6 +15,7 @@ namespace {
 constexpr uint32_t kSample = 2048;  // texels, and nodes, traced again
 constexpr uint64_t kSampleStream = 0xe440;
 constexpr size_t kHalfBounces = 8;  // at albedo ½ the rest is below 1/256 of the first
+constexpr double kLeft = 2;         // what half as many nodes err by more, over the error
 constexpr size_t kBins = 50;
 
 // One at random in each of equal strata of [0, count).
@@ -217,8 +218,8 @@ ErrorEstimate estimate_errors(const Tracer& again, const Visibility& seen, const
     const MeanLight all = mean_light(bounces);
     const MeanLight coarse =
         mean_coarse_light(again.patches(), seen, std::min(kHalfBounces, bounces.irradiance.size() - 1));
-    errors.first_patches = std::abs(coarse.first - all.first) / 3;
-    errors.half_patches = std::abs(coarse.half - all.half) / 3;
+    errors.first_patches = std::abs(coarse.first - all.first) / kLeft;
+    errors.half_patches = std::abs(coarse.half - all.half) / kLeft;
   }
   errors.total_bounces = std::abs(bounces.mean_residual);
   errors.half_bounces = errors.total_bounces * std::pow(0.5, static_cast<double>(bounces.irradiance.size()));
