@@ -7,7 +7,7 @@
 #include "core/constants.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
-#include "sampling/low_discrepancy.h"
+#include "sampling/strata.h"
 
 namespace hemibake {
 namespace {
@@ -17,17 +17,6 @@ constexpr uint64_t kSampleStream = 0xe440;
 constexpr size_t kHalfBounces = 8;  // at albedo ½ the rest is below 1/256 of the first
 constexpr double kLeft = 2;         // what half as many nodes err by more, over the error
 constexpr size_t kBins = 50;
-
-// One at random in each of equal strata of [0, count).
-std::vector<uint32_t> sample_places(uint32_t count) {
-  std::vector<uint32_t> places(std::min(count, kSample));
-  for (uint32_t i = 0; i < places.size(); ++i) {
-    const double place =
-        (i + unit_interval(mix_bits(0, kSampleStream, i))) / static_cast<double>(places.size());
-    places[i] = std::min(count - 1, static_cast<uint32_t>(place * count));
-  }
-  return places;
-}
 
 // Two measurements of the same: their difference has twice the variance of one.
 struct Noise {
@@ -57,7 +46,7 @@ NodeNoise node_noise(const Tracer& again, const Visibility& seen) {
   std::array<Moments, NodeNoise::kKinds> squares, binomials;
   Row row;
   TracerCounts counts;
-  for (const uint32_t node : sample_places(again.patches().count)) {
+  for (const uint32_t node : draw_from_strata(again.patches().count, kSample, kSampleStream)) {
     again.trace_patch(node, false, row, counts);
     const double direct = static_cast<double>(seen.patch_direct()[node]);
     const double variance = (row.direct_over_pi - direct) * (row.direct_over_pi - direct) / 2;
@@ -76,7 +65,8 @@ NodeNoise node_noise(const Tracer& again, const Visibility& seen) {
 // The sampled texels again, with the same light of the patches; its noise comes on top.
 Noise trace_again(const Tracer& again, const Visibility& seen, const Bounces& bounces,
                   const NodeNoise& nodes) {
-  const std::vector<uint32_t> texels = sample_places(static_cast<uint32_t>(seen.direct_over_pi.size()));
+  const std::vector<uint32_t> texels =
+      draw_from_strata(static_cast<uint32_t>(seen.direct_over_pi.size()), kSample, kSampleStream);
   struct Difference {
     double ao, direct, first, light_variance;
   };

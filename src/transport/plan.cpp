@@ -9,7 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/statistics.h"
-#include "sampling/low_discrepancy.h"
+#include "sampling/strata.h"
 #include "transport/links.h"
 
 namespace hemibake {
@@ -29,21 +29,18 @@ struct Pilot {
   double cpu_seconds = 0;
 };
 
-// Groups of kGroupRows neighbours, which a tracer may answer together, spread over [0, count): one at random
-// in each of equal strata (a fixed step would meet the same columns of the map again and again), traced on
-// this thread. trace_rows(first, rows, counts) as Tracer::trace_texels.
+// Groups of kGroupRows neighbours, which a tracer may answer together, spread over [0, count), traced on this
+// thread. trace_rows(first, rows, counts) as Tracer::trace_texels.
 template <class TraceRows>
 Pilot trace_pilot(uint32_t count, uint32_t columns, uint32_t most_groups, const TraceRows& trace_rows) {
   Pilot pilot;
   TracerCounts counts;
   std::vector<Row> rows(std::min(count, kGroupRows));
-  const uint32_t all_groups = (count + kGroupRows - 1) / kGroupRows,
-                 groups = std::min(all_groups, most_groups);
-  std::vector<uint32_t> firsts;
-  for (uint32_t i = 0; i < groups; ++i) {
-    const double place = (i + unit_interval(mix_bits(0, kPilotStream, i))) / groups;
-    firsts.push_back(std::min(all_groups - 1, static_cast<uint32_t>(place * all_groups)) * kGroupRows);
-    pilot.rows += std::min(kGroupRows, count - firsts.back());
+  const uint32_t groups = (count + kGroupRows - 1) / kGroupRows;
+  std::vector<uint32_t> firsts = draw_from_strata(groups, most_groups, kPilotStream);
+  for (uint32_t& first : firsts) {
+    first *= kGroupRows;
+    pilot.rows += std::min(kGroupRows, count - first);
   }
   Links links = make_links(pilot.rows, columns);
   uint32_t next_row = 0;
