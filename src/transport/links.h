@@ -7,7 +7,7 @@
 // is about sum · √(links / 12) / T times the spread of the light it sees, T being the sum of its multiples;
 // with T = 200 · sum · √links that is 1/700 of the spread in every row, and 10⁻⁵ to 10⁻⁴ of π in a bake's
 // totals (measured, tests/bench/coding_bench.cpp). T is 12 to 64 for each link, but at
-// least 4096 in rows that one link has more than half of.
+// least 4096 in rows with a weight above ½.
 //
 // A link is 24 bits: the lowest `weight_bits` of its block hold the multiple, the others the step from the
 // row's column before. A multiple that is too large goes on in links without a step, a step that is too large

@@ -10,7 +10,7 @@ namespace hemibake {
 namespace {
 
 constexpr double kFinenessPerSum = 200, kLeastFineness = 12, kMostFineness = 64;
-// Multiples of a row that one link has more than half of: light in a deep pit leaves it by the others,
+// Multiples of a row that gets over half of all its light by one link: light in a deep pit leaves it by others,
 // however small they are.
 constexpr double kDominatedFineness = 4096;
 constexpr int kFewestWeightBits = 2, kMostWeightBits = 12;
@@ -93,7 +93,7 @@ float round_weights(std::span<const Link> row, std::span<uint32_t> multiples) {
   const double links = static_cast<double>(count);
   double total = std::ceil(
       std::clamp(kFinenessPerSum * sum * std::sqrt(links), kLeastFineness * links, kMostFineness * links));
-  if (largest > positive / 2) total = std::max(total, kDominatedFineness);
+  if (largest > 0.5) total = std::max(total, kDominatedFineness);
   round_multiples(row, positive / total, total, multiples);
   return static_cast<float>(sum / std::accumulate(multiples.begin(), multiples.end(), 0.0));
 }
