@@ -68,10 +68,6 @@ class EmbreeTracer final : public Tracer {
     }
   };
 
-  // Nodes of facets cut alike are of two kinds: corners and others.
-  static size_t node_kind(int k, uint32_t node) {
-    return (k == kFineSubdivision ? 2 : 0) + (is_corner(k, node) ? 1 : 0);
-  }
   static NodeRays make_node_rays(int rays);
   EmbreeTracer(const EmbreeTracer&) = default;
   void build_scene();
@@ -96,7 +92,7 @@ class EmbreeTracer final : public Tracer {
   RayOptions options_;
   PatchSet patches_;
   std::vector<WeightedDirection> texel_directions_;
-  std::array<NodeRays, 4> node_rays_;  // by node_kind
+  std::array<NodeRays, kNodeKinds> node_rays_;  // by node_kind
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
   bool wrap_;

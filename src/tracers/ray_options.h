@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -27,6 +28,13 @@ inline int rays_per_node(int rays, int k, uint32_t node) {
   const double rays_of_others = kFacetRays * rays / (node_count(k) - 3 + 3 * kCornerRays);
   const double wanted = (is_corner(k, node) ? kCornerRays : 1) * rays_of_others;
   return std::max(std::min(rays, 8), static_cast<int>(std::lround(wanted)));
+}
+
+// Nodes that have as many rays as each other, 0 … kNodeKinds − 1: the corners and the others of facets cut
+// alike.
+inline constexpr size_t kNodeKinds = 4;
+constexpr size_t node_kind(int k, uint32_t node) {
+  return (k == kFineSubdivision ? 2 : 0) + (is_corner(k, node) ? 1 : 0);
 }
 
 // Steps of the golden ratio: any number of them is spread evenly over the unit interval.

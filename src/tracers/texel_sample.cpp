@@ -17,6 +17,11 @@ double population_of(const TexelSample& sample) {
   return sum;
 }
 
+// Share of all texels that are inside, estimated.
+double domain_share(const TexelSample& sample, const std::vector<bool>& inside) {
+  return weighted_mean(sample, std::vector<double>(inside.begin(), inside.end()));
+}
+
 }  // namespace
 
 TexelSample sample_texels(std::span<const uint32_t> population, size_t wanted, uint64_t seed) {
@@ -84,15 +89,6 @@ double weighted_mean(const TexelSample& sample, std::span<const double> values) 
       sum += values[next++] * static_cast<double>(stratum.population) / static_cast<double>(stratum.count);
   return sum / population;
 }
-
-namespace {
-
-// Share of all texels that are inside, estimated.
-double domain_share(const TexelSample& sample, const std::vector<bool>& inside) {
-  return weighted_mean(sample, std::vector<double>(inside.begin(), inside.end()));
-}
-
-}  // namespace
 
 double weighted_mean(const TexelSample& sample, const std::vector<bool>& inside,
                      std::span<const double> values) {

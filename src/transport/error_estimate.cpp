@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/statistics.h"
 #include "sampling/strata.h"
+#include "tracers/ray_options.h"
 
 namespace hemibake {
 namespace {
@@ -28,36 +29,35 @@ double deviation(const Moments& squares) { return std::sqrt(squares.mean / 2); }
 // Noise of the direct light of the nodes. What a node sees is so much of its rays: their variance goes like
 // E (1 − E), E the direct light over π, and like one over their number, which nodes of one kind share.
 struct NodeNoise {
-  static constexpr size_t kKinds = 4;
   double mean_variance = 0;
-  std::array<double, kKinds> per_binomial{};  // variance over E (1 − E)
+  std::array<double, kNodeKinds> per_binomial{};  // variance over E (1 − E)
 };
 
-size_t node_kind(const PatchSet& patches, uint32_t patch) {
+size_t kind_of(const PatchSet& patches, uint32_t patch) {
   if (patches.kind == Patches::kTexels) return 0;
   const FacetNode node = facet_node(patches, patch);
-  return (node.subdivision == kFineSubdivision ? 2 : 0) + (is_corner(node.subdivision, node.node) ? 1 : 0);
+  return node_kind(node.subdivision, node.node);
 }
 
 double binomial(double share) { return share * (1 - share); }
 
 NodeNoise node_noise(const Tracer& again, const Visibility& seen) {
   Moments all;
-  std::array<Moments, NodeNoise::kKinds> squares, binomials;
+  std::array<Moments, kNodeKinds> squares, binomials;
   Row row;
   TracerCounts counts;
   for (const uint32_t node : draw_from_strata(again.patches().count, kSample, kSampleStream)) {
     again.trace_patch(node, false, row, counts);
     const double direct = static_cast<double>(seen.patch_direct()[node]);
     const double variance = (row.direct_over_pi - direct) * (row.direct_over_pi - direct) / 2;
-    const size_t kind = node_kind(again.patches(), node);
+    const size_t kind = kind_of(again.patches(), node);
     all.add(variance);
     squares[kind].add(variance);
     binomials[kind].add(binomial(direct));
   }
   NodeNoise noise;
   noise.mean_variance = all.mean;
-  for (size_t kind = 0; kind < NodeNoise::kKinds; ++kind)
+  for (size_t kind = 0; kind < kNodeKinds; ++kind)
     if (binomials[kind].mean > 0) noise.per_binomial[kind] = squares[kind].mean / binomials[kind].mean;
   return noise;
 }
@@ -83,7 +83,7 @@ Noise trace_again(const Tracer& again, const Visibility& seen, const Bounces& bo
         const double direct = static_cast<double>(seen.patch_direct()[link.patch]);
         first += weight * direct;
         light_variance +=
-            weight * weight * binomial(direct) * nodes.per_binomial[node_kind(again.patches(), link.patch)];
+            weight * weight * binomial(direct) * nodes.per_binomial[kind_of(again.patches(), link.patch)];
       }
       differences[i] = {row.visible_fraction - static_cast<double>(seen.visible_fraction[texel]),
                         row.direct_over_pi - static_cast<double>(seen.direct_over_pi[texel]),
