@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <optional>
 
 #include "sampling/low_discrepancy.h"
 #include "tracers/link_merge.h"
@@ -22,15 +21,17 @@ namespace {
 constexpr uint64_t kTexelTurn = 0x511ce01, kNodeTurn = 0x511ce03, kTexelPlace = 0x511ce04,
                    kNodePlace = 0x511ce05, kTexelChoice = 0x511ce06, kNodeChoice = 0x511ce07;
 
-// Samples for links of a slice that holds the mean share of its receiver's hemisphere. Nodes take fewer: what
-// a texel gathers averages over many of them.
-constexpr int kTexelStrata = kStrataPerSlice, kNodeStrata = kStrataPerSlice / 2;
+// Hits for links of a slice that holds the mean share of its receiver's hemisphere. Nodes take fewer: what a
+// texel gathers averages over many of them.
+constexpr int kTexelHits = kHitsPerSlice, kNodeHits = kHitsPerSlice / 2;
 
 // Packets walked together: with links, what they meet stays in the cache.
 constexpr size_t kPacketsTogether = 64, kTexelPacketsWithLinks = 16;
 
-// Less than this share of the hemisphere blocked counts as none: as little as a horizon may be off by.
-constexpr double kLeastBlocked = 1e-4;
+// Less than this share of the light blocked counts as none: a tenth of what a horizon may be off by.
+constexpr double kLeastBlocked = 1e-5;
+// Hits wanted of a receiver that would have none.
+constexpr double kFewestHits = 8;
 
 constexpr uint32_t kNoFacet = 0xffffffff;
 
@@ -50,6 +51,10 @@ struct RowPlaces {
   uint32_t map_width = 0xffffffff, tile_width = 0;
   size_t of(uint32_t number) const { return size_t{number / map_width} * tile_width + number % map_width; }
 };
+
+glm::dvec3 mean_direction(const SliceSums& sums, size_t lane) {
+  return {sums.x[lane], sums.y[lane], sums.z[lane]};
+}
 
 class SliceTracer final : public Tracer {
  public:
@@ -78,7 +83,7 @@ class SliceTracer final : public Tracer {
 
  private:
   int turn_of(const SlicePaths& paths, uint64_t stream, uint64_t place) const;
-  void choose_strata(int per_slice, uint64_t stream, uint64_t place, uint64_t step,
+  void choose_hits(int per_slice, uint64_t stream, uint64_t place, uint64_t step,
                      SlicePacket& packet) const;
   SlicePacket texel_packet(int x, int y) const;
   SlicePacket node_packet(const PatchRun& run, uint32_t half, uint32_t node) const;
@@ -113,11 +118,11 @@ int SliceTracer::turn_of(const SlicePaths& paths, uint64_t stream, uint64_t plac
 }
 
 // The mean over the azimuths of the weight of a receiver's slice is half the secant of its tilt.
-void SliceTracer::choose_strata(int per_slice, uint64_t stream, uint64_t place, uint64_t step,
+void SliceTracer::choose_hits(int per_slice, uint64_t stream, uint64_t place, uint64_t step,
                                 SlicePacket& packet) const {
   for (uint64_t lane = 0; lane < kSliceLanes; ++lane) {
     const double x = static_cast<double>(packet.rim_x[lane]), y = static_cast<double>(packet.rim_y[lane]);
-    packet.strata_per_weight[lane] = static_cast<float>(2 * per_slice / std::sqrt(1 + x * x + y * y));
+    packet.hits_per_weight[lane] = static_cast<float>(2 * per_slice / std::sqrt(1 + x * x + y * y));
     packet.place[lane] =
         static_cast<float>(unit_interval(mix_bits(options_.seed, stream, place + step * lane)));
   }
@@ -137,7 +142,7 @@ SlicePacket SliceTracer::texel_packet(int x, int y) const {
     packet.rim_x[l] = -n.x / n.z;
     packet.rim_y[l] = -n.y / n.z;
   }
-  choose_strata(kTexelStrata, kTexelPlace, surface_.heights_m.index(x, y), 1, packet);
+  choose_hits(kTexelHits, kTexelPlace, surface_.heights_m.index(x, y), 1, packet);
   return packet;
 }
 
@@ -161,7 +166,7 @@ SlicePacket SliceTracer::node_packet(const PatchRun& run, uint32_t half, uint32_
     packet.rim_x[l] = packet.plane_x[l] = height(1, corner) - height(0, corner);
     packet.rim_y[l] = packet.plane_y[l] = height(corner, 1) - height(corner, 0);
   }
-  choose_strata(kNodeStrata, kNodePlace, first_patch, 1, packet);
+  choose_hits(kNodeHits, kNodePlace, first_patch, 1, packet);
   return packet;
 }
 
@@ -179,28 +184,32 @@ std::span<const PacketView> SliceTracer::look(const SlicePaths& paths, WalkFor w
       packets, views);
   for (size_t i = 0; i < packets.size(); ++i) {
     if (limited) clip_to_max_distance(paths, packets[i], views[i]);
-    if (some && paths.azimuths_per_linked > 1) find_missed_hits(paths, packets[i], views[i]);
+    if (some) find_missed_hits(paths, packets[i], views[i]);
   }
   return views;
 }
 
-// Looks for links along all azimuths where a lane met nothing along some of them and yet does not see the
-// whole sky.
+// Looks again, along all azimuths and more closely, where a lane has no hits and yet does not see the whole
+// sky.
 void SliceTracer::find_missed_hits(const SlicePaths& paths, const SlicePacket& packet,
                                    PacketView& view) const {
-  const auto missed = [&](size_t lane) {
-    return view.hits[lane].empty() &&
-           view.sky.uniform[lane] < (1 - kLeastBlocked) * view.hemisphere.uniform[lane];
-  };
-  std::optional<PacketView> again;
+  SlicePacket missed = packet;
+  missed.hits_per_weight = {};
+  bool any = false;
   for (size_t lane = 0; lane < static_cast<size_t>(packet.lanes); ++lane) {
-    if (!missed(lane)) continue;
-    if (!again) {
-      again.emplace();
-      walk_packets(field_, paths, {WalkFor::kHits, 1, max_distance_texels_}, {&packet, 1}, {&*again, 1});
-    }
-    view.hits[lane] = again->hits[lane];
+    if (!view.hits[lane].empty()) continue;
+    const glm::dvec3 normal_over_z(-packet.rim_x[lane], -packet.rim_y[lane], 1);
+    const double whole = glm::dot(normal_over_z, mean_direction(view.hemisphere, lane));
+    const double blocked = whole - glm::dot(normal_over_z, mean_direction(view.sky, lane));
+    if (blocked < kLeastBlocked * whole) continue;
+    missed.hits_per_weight[lane] = static_cast<float>(kFewestHits / blocked);
+    any = true;
   }
+  if (!any) return;
+  PacketView again;
+  walk_packets(field_, paths, {WalkFor::kHits, 1, max_distance_texels_}, {&missed, 1}, {&again, 1});
+  for (size_t lane = 0; lane < kSliceLanes; ++lane)
+    if (missed.hits_per_weight[lane] > 0) view.hits[lane] = std::move(again.hits[lane]);
 }
 
 // Turns what is farther away than the maximum distance into sky.
@@ -226,7 +235,7 @@ void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacke
       near.weight = static_cast<float>(part.vertical - rim * part.horizontal);
       if (near.weight <= 0) continue;
       near_stretches.push_back(near);
-      append_hits(surface_, near, start, direction, rim, packet.strata_per_weight[lane], view.hits[lane]);
+      append_hits(surface_, near, start, direction, rim, packet.hits_per_weight[lane], view.hits[lane]);
     }
     view.stretches[lane] = std::move(near_stretches);
   }
@@ -235,14 +244,11 @@ void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacke
 void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, const PacketView& view,
                            size_t lane, uint32_t own_facet, double choice, bool with_links, Row& row,
                            TracerCounts& counts) const {
-  const auto mean_direction = [&](const SliceSums& sums) {
-    return glm::dvec3(sums.x[lane], sums.y[lane], sums.z[lane]);
-  };
   const double rim_x = static_cast<double>(packet.rim_x[lane]),
                rim_y = static_cast<double>(packet.rim_y[lane]);
   const glm::dvec3 normal_over_z(-rim_x, -rim_y, 1);
-  const glm::dvec3 sky = mean_direction(view.sky);
-  const double whole = glm::dot(normal_over_z, mean_direction(view.hemisphere));
+  const glm::dvec3 sky = mean_direction(view.sky, lane);
+  const double whole = glm::dot(normal_over_z, mean_direction(view.hemisphere, lane));
   // Over what the same azimuths give with nothing in the way: exactly 1 on open ground.
   row.visible_fraction = std::clamp(view.sky.uniform[lane] / view.hemisphere.uniform[lane], 0.0, 1.0);
   row.direct_over_pi = std::clamp(glm::dot(normal_over_z, sky) / whole, 0.0, 1.0);

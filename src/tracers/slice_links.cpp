@@ -71,9 +71,9 @@ Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 
 }
 
 void append_hits(const Surface& surface, const Stretch& stretch, glm::dvec2 start, glm::dvec2 direction,
-                 double rim, float strata_per_weight, std::vector<SliceHit>& hits) {
+                 double rim, float hits_per_weight, std::vector<SliceHit>& hits) {
   const double low = static_cast<double>(stretch.low), high = static_cast<double>(stretch.high);
-  const int pieces = 1 + static_cast<int>(stretch.weight * strata_per_weight);
+  const int pieces = 1 + static_cast<int>(stretch.weight * hits_per_weight);
   double begin = low;
   for (int piece = 1; piece <= pieces; ++piece) {
     const double share = static_cast<double>(piece) / pieces;

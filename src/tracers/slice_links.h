@@ -26,7 +26,7 @@ Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 
 // Appends hits that stand for all of a stretch, as finely as a walk samples. `start` is the receiver's place
 // in texels; `rim` is the lowest slope the receiver sees at this azimuth.
 void append_hits(const Surface& surface, const Stretch& stretch, glm::dvec2 start, glm::dvec2 direction,
-                 double rim, float strata_per_weight, std::vector<SliceHit>& hits);
+                 double rim, float hits_per_weight, std::vector<SliceHit>& hits);
 
 // Appends the links of a hit worth `weight`. choice: in [0, 1), which node of a facet is drawn.
 void append_links(const Surface& surface, const PatchSet& patches, TexelLinks texel_links,

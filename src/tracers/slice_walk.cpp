@@ -12,7 +12,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // Must come after highway.h.
-#include "tracers/slice_strata-inl.h"
+#include "tracers/slice_hits-inl.h"
 
 #ifndef HEMIBAKE_SLICE_WALK_ONCE
 #define HEMIBAKE_SLICE_WALK_ONCE
@@ -102,7 +102,7 @@ class PathWalk {
                       PacketView& view);
   void find_hits(const SlicePacket& packet, uint32_t azimuth, Lanes& lanes, PacketView& view);
   bool nothing_left(const Lanes& lanes, int segment) const;
-  void hit_strata(const SlicePacket& packet, int segment, Lanes& lanes, PacketView& view);
+  void meet_hits(const SlicePacket& packet, int segment, Lanes& lanes, PacketView& view);
   template <class Meet>
   void cross_segment(const SlicePacket& packet, int segment, const Lanes& lanes, const Meet& meet);
   uint32_t facet_at(glm::ivec2 corner, const FacetBefore& facet, int lane) const;
@@ -125,8 +125,8 @@ class PathWalk {
   float inverse_step_ = 0;
   int last_segment_;
   bool blocks_below_;  // a map that repeats for ever meets whatever goes down
-  Strata strata_;      // of the packet at hand
-  LaneArray<uint8_t> next_stratum_;
+  HitSlopes hits_;     // of the packet at hand
+  LaneArray<uint8_t> next_hit_;
 };
 
 HWY_INLINE Lanes PathWalk::start(const SlicePacket& packet) const {
@@ -258,21 +258,21 @@ HWY_INLINE void PathWalk::find_stretches(const SlicePacket& packet, uint32_t azi
           });
 }
 
-// Follows the path again, up to what the samples of the strata below the horizon meet.
+// Follows the path again, up to what the samples of the slice below the horizon meet.
 HWY_INLINE void PathWalk::find_hits(const SlicePacket& packet, uint32_t azimuth, Lanes& lanes,
                                     PacketView& view) {
-  const Vectors shift = load(packet.place), per_weight = load(packet.strata_per_weight);
+  const Vectors shift = load(packet.place), per_weight = load(packet.hits_per_weight);
   const uint32_t linked = azimuth / static_cast<uint32_t>(options_.azimuths_per_linked);
   const float turn = static_cast<float>(radical_inverse(2, linked));
-  strata_.most = 0;
+  hits_.most = 0;
   for (size_t p = 0; p < kParts; ++p) {
     const V sum = hn::Add(shift.part[p], hn::Set(kF, turn));
-    add_strata(p, lanes.rim.part[p], lanes.slope.part[p], per_weight.part[p], hn::Sub(sum, hn::Floor(sum)),
-               strata_);
+    place_hits(p, lanes.rim.part[p], lanes.slope.part[p], per_weight.part[p], hn::Sub(sum, hn::Floor(sum)),
+               hits_);
   }
-  if (strata_.most == 0) return;
-  next_stratum_ = {};
-  for (size_t p = 0; p < kParts; ++p) lanes.slope.part[p] = hn::LoadU(kF, strata_.slope[0] + p * kWidth);
+  if (hits_.most == 0) return;
+  next_hit_ = {};
+  for (size_t p = 0; p < kParts; ++p) lanes.slope.part[p] = hn::LoadU(kF, hits_.slope[0] + p * kWidth);
   for (int segment = 0;;) {
     if (!reaches_map(place(packet, segments_.windows(segment).corner[0])) || segment > last_segment_) return;
     if (segment > 0) {
@@ -281,7 +281,7 @@ HWY_INLINE void PathWalk::find_hits(const SlicePacket& packet, uint32_t azimuth,
       segment += skipped;
       if (skipped > 0) continue;
     }
-    hit_strata(packet, segment, lanes, view);
+    meet_hits(packet, segment, lanes, view);
     ++segment;
   }
 }
@@ -300,7 +300,7 @@ HWY_INLINE bool PathWalk::nothing_left(const Lanes& lanes, int segment) const {
   return all;
 }
 
-HWY_INLINE void PathWalk::hit_strata(const SlicePacket& packet, int segment, Lanes& lanes, PacketView& view) {
+HWY_INLINE void PathWalk::meet_hits(const SlicePacket& packet, int segment, Lanes& lanes, PacketView& view) {
   const SlicePath& path = segments_.path();
   const V near = broadcast(segment * path.step), zero = hn::Zero(kF), one = hn::Set(kF, 1.0f);
   const glm::vec2 begin(segment_begin(path, segment)), direction(path.direction);
@@ -330,12 +330,12 @@ HWY_INLINE void PathWalk::hit_strata(const SlicePacket& packet, int segment, Lan
           hn::Store(distance, kF, distances);
           for_each_lane(met, [&](size_t l) {
             const size_t lane = p * kWidth + l;
-            const size_t stratum = next_stratum_[lane]++;
+            const size_t next_hit = ++next_hit_[lane];
             const glm::vec2 in_cell = begin + alongs[l] * direction - glm::vec2(facet.column, facet.row);
             const glm::vec2 uv = facet.half == 0 ? in_cell : 1.0f - in_cell;
-            view.hits[lane].push_back({facet_at(corner, facet, static_cast<int>(lane)),
-                                       strata_.weight[stratum][lane], uv.x, uv.y, distances[l]});
-            slopes[l] = strata_.slope[stratum + 1][lane];
+            view.hits[lane].push_back(
+                {facet_at(corner, facet, static_cast<int>(lane)), 1, uv.x, uv.y, distances[l]});
+            slopes[l] = hits_.slope[next_hit][lane];
           });
           lanes.slope.part[p] = hn::Load(kF, slopes);
           met = hn::Ge(slope, lanes.slope.part[p]);

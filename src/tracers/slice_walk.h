@@ -15,8 +15,8 @@ namespace hemibake {
 template <class T>
 using LaneArray = std::array<T, kSliceLanes>;
 
-// Most samples for links of a slice that holds the mean share of its receiver's hemisphere.
-inline constexpr int kStrataPerSlice = 8;
+// Most hits for links of a slice that holds the mean share of its receiver's hemisphere.
+inline constexpr int kHitsPerSlice = 8;
 
 // Receivers side by side: lane l starts in the cell (x + l, y).
 struct SlicePacket {
@@ -27,8 +27,8 @@ struct SlicePacket {
   LaneArray<float> base{};                // height there, texels
   LaneArray<float> plane_x{}, plane_y{};  // slopes of the plane through it on which the start lies
   LaneArray<float> rim_x{}, rim_y{};      // slopes of the plane normal to the receiver's normal
-  // For links: how finely slices are sampled, samples per unit of weight, and where in their strata, 0..1.
-  LaneArray<float> strata_per_weight{}, place{};
+  // For links: hits per unit of weight of a slice, and where its first one lies, 0..1 of the way to a second.
+  LaneArray<float> hits_per_weight{}, place{};
 };
 
 // ∫ over a part of every slice of 1 and of the direction d, in solid angle times azimuths / 2π.
@@ -48,7 +48,7 @@ struct Stretch {
 // A point of a facet that a receiver sees at one slope of an azimuth, standing for the slopes around it.
 struct SliceHit {
   uint32_t facet;
-  float weight;    // ∫ cosine to the receiver's normal, over normal.z, as in SliceSums
+  float weight;    // of all hits of the receiver; a walk finds hits that weigh alike
   float u, v;      // where on the facet (surface/facets.h); to rounding within 0..1
   float distance;  // along the ray, texels
 };
