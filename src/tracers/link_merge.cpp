@@ -24,8 +24,8 @@ constexpr uint32_t kFree = 0xffffffff;
 // Texels: a hit nearer than this is linked to all nodes around it. It is the distance of the nodes of a long
 // facet; in a deep fold most rays hit nearer.
 constexpr double kNear = 0.25;
-// What such a hit is worth is shared in whole parts: rows of hits that weigh alike are then stored as they are
-// (transport/links.h).
+// What such a hit is worth is shared in whole parts: rows of hits that weigh alike are then stored as they
+// are (transport/links.h).
 constexpr double kNearParts = 8;
 
 // Leaves each patch once, in order of its first link, weights summed in double in the order of the links. A
@@ -101,11 +101,14 @@ void add_node_links(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, doub
     links.push_back({draw_patch(patches, facet, uv, choice), static_cast<float>(weight)});
     return;
   }
-  double below = 0;
-  for (const PatchShare& share : patch_shares(patches, facet, uv)) {
-    const double above = below + share.share;
-    const double parts = std::floor(kNearParts * above + choice) - std::floor(kNearParts * below + choice);
-    if (parts > 0) links.push_back({share.patch, static_cast<float>(weight * (parts / kNearParts))});
+  double parts_left = kNearParts, below = choice;
+  const std::array<PatchShare, 3> shares = patch_shares(patches, facet, uv);
+  for (size_t i = 0; i < shares.size(); ++i) {
+    const double above = below + kNearParts * shares[i].share;
+    const double parts =
+        i + 1 == shares.size() ? parts_left : std::min(parts_left, std::floor(above) - std::floor(below));
+    if (parts > 0) links.push_back({shares[i].patch, static_cast<float>(weight * (parts / kNearParts))});
+    parts_left -= parts;
     below = above;
   }
 }
