@@ -1,4 +1,4 @@
-// The product of packed links and values: a vector takes a link of each of sixteen rows at once, so that
+// The product of packed links and values: a vector takes a code of each of sixteen rows at once, so that
 // decoding and sums need no exchange between lanes.
 #include <sys/mman.h>
 
@@ -26,26 +26,29 @@ constexpr uint32_t kTurn = LinkBlock::kRowsInTurn;
 
 #if HWY_TARGET == HWY_SCALAR
 
-// A machine without vectors: the same, a link at a time.
+// A machine without vectors: the same, a code at a time.
 void gather_block(const BlockView& block, const float* HWY_RESTRICT values, double* HWY_RESTRICT out) {
-  const uint8_t* HWY_RESTRICT link = block.links;
-  const uint32_t weight_mask = (1u << block.weight_bits) - 1;
+  const uint16_t* HWY_RESTRICT code = block.codes;
+  const uint32_t most_weight = (1u << block.weight_bits) - 1;
+  const uint32_t most_step = (1u << (LinkBlock::kCodeBits - block.weight_bits)) - 1;
   for (uint32_t first = 0; first < block.rows; first += kTurn) {
-    uint32_t column[kTurn] = {};
+    uint32_t column[kTurn] = {}, total[kTurn] = {};
     double sum[kTurn] = {};
     const uint32_t places = std::min(kTurn, block.rows - first);
-    for (uint32_t i = 0; i < places; ++i)
-      column[i] = block.base + (uint32_t{block.start[first + i]} << block.start_shift);
+    for (uint32_t i = 0; i < places; ++i) column[i] = block.before_start(first + i);
     for (uint32_t k = 0; block.rows_as_long[k] > first; ++k) {
       const uint32_t turn = std::min(kTurn, block.rows_as_long[k] - first);
-      for (uint32_t i = 0; i < turn; ++i) {
-        const uint32_t code = link[2 * i] | link[2 * i + 1] << 8 | link[2 * turn + i] << 16;
-        column[i] += code >> block.weight_bits;
-        sum[i] += static_cast<double>(code & weight_mask) * static_cast<double>(values[column[i]]);
+      for (uint32_t i = 0; i < turn; ++i, ++code) {
+        const uint32_t step = *code >> block.weight_bits, part = *code & most_weight;
+        column[i] += part == 0 ? step * most_step : step;
+        if (part == 0) continue;
+        const uint32_t weight = step == 0 ? part * most_weight : part;
+        total[i] += weight;
+        sum[i] += static_cast<double>(weight) * static_cast<double>(values[column[i]]);
       }
-      link += turn * LinkBlock::kLinkBytes;
     }
-    for (uint32_t i = 0; i < places; ++i) out[block.row[first + i]] = sum[i] * block.quantum(first + i);
+    for (uint32_t i = 0; i < places; ++i)
+      out[block.row[first + i]] = sum[i] * (block.sum(first + i) / std::max(1u, total[i]));
   }
 }
 
@@ -58,8 +61,8 @@ constexpr hn::RebindToSigned<F> kI;
 constexpr hn::Half<F> kHalfF;
 constexpr hn::Half<hn::RebindToSigned<F> > kHalfI;
 constexpr hn::Repartition<double, F> kD;
-constexpr hn::Rebind<uint16_t, F> kLow;
-constexpr hn::Rebind<uint8_t, F> kHigh;
+constexpr hn::Rebind<uint16_t, F> kCode;
+constexpr hn::Rebind<uint8_t, F> kByte;
 constexpr size_t kWidth = hn::MaxLanes(F());
 constexpr size_t kParts = kTurn / kWidth;
 using U = hn::Vec<hn::RebindToUnsigned<F> >;
@@ -67,62 +70,65 @@ using D = hn::Vec<hn::Repartition<double, F> >;
 
 // Some of the rows that take turns.
 struct Part {
-  U column;
+  U column, total;
   D low, high;  // sums
 };
 
 struct Decoder {
-  U weight_mask;
+  U most_weight;
   int weight_bits;
   const float* HWY_RESTRICT values;
 
-  // The next link of each row: `links` from this part's low 16 bits on, the high ones at `high`; `lanes` of
-  // them are there.
-  HWY_INLINE void add_links(const uint8_t* low, const uint8_t* high, size_t lanes, Part& part) const {
-    const auto upper = hn::PromoteTo(kU, hn::PromoteTo(kLow, hn::LoadU(kHigh, high)));
-    const auto lower = hn::PromoteTo(kU, hn::LoadU(kLow, reinterpret_cast<const uint16_t*>(low)));
-    const U code = hn::IfThenElseZero(hn::FirstN(kU, lanes), hn::Or(lower, hn::ShiftLeft<16>(upper)));
-    part.column = hn::Add(part.column, hn::ShiftRightSame(code, weight_bits));
-    const auto weight = hn::BitCast(kI, hn::And(code, weight_mask));
-    const auto light = hn::GatherIndex(kF, values, hn::BitCast(kI, part.column));
-    part.low = hn::MulAdd(hn::PromoteTo(kD, hn::LowerHalf(kHalfI, weight)),
+  // The next code of each row; `lanes` of them are there.
+  HWY_INLINE void add_links(const uint16_t* codes, size_t lanes, Part& part) const {
+    const U code = hn::IfThenElseZero(hn::FirstN(kU, lanes), hn::PromoteTo(kU, hn::LoadU(kCode, codes)));
+    const U step = hn::ShiftRightSame(code, weight_bits), weight = hn::And(code, most_weight);
+    const auto is_far = hn::Eq(weight, hn::Zero(kU)), is_large = hn::Eq(step, hn::Zero(kU));
+    // Times the largest step, times the largest weight.
+    const U far = hn::Sub(hn::ShiftLeftSame(step, LinkBlock::kCodeBits - weight_bits), step);
+    const U large = hn::Sub(hn::ShiftLeftSame(weight, weight_bits), weight);
+    const U multiple = hn::IfThenElse(is_large, large, weight);
+    part.column = hn::Add(part.column, hn::IfThenElse(is_far, far, step));
+    part.total = hn::Add(part.total, multiple);
+    // What has no weight reads the first value: it is at hand, and a row without codes has no column.
+    const U index = hn::IfThenZeroElse(is_far, part.column);
+    const auto times = hn::BitCast(kI, multiple);
+    const auto light = hn::GatherIndex(kF, values, hn::BitCast(kI, index));
+    part.low = hn::MulAdd(hn::PromoteTo(kD, hn::LowerHalf(kHalfI, times)),
                           hn::PromoteTo(kD, hn::LowerHalf(kHalfF, light)), part.low);
-    part.high = hn::MulAdd(hn::PromoteTo(kD, hn::UpperHalf(kHalfI, weight)),
+    part.high = hn::MulAdd(hn::PromoteTo(kD, hn::UpperHalf(kHalfI, times)),
                            hn::PromoteTo(kD, hn::UpperHalf(kHalfF, light)), part.high);
   }
 };
 
-HWY_INLINE size_t lanes_from(size_t lane, size_t count) { return count > lane ? count - lane : 0; }
-
 void gather_block(const BlockView& block, const float* HWY_RESTRICT values, double* HWY_RESTRICT out) {
-  const Decoder decoder{hn::Set(kU, (1u << block.weight_bits) - 1), static_cast<int>(block.weight_bits),
-                        values};
-  const uint8_t* HWY_RESTRICT link = block.links;
+  const Decoder decoder{hn::Set(kU, (1u << block.weight_bits) - 1), block.weight_bits, values};
+  const uint16_t* HWY_RESTRICT codes = block.codes;
   HWY_ALIGN double sums[Links::kRowsPerBlock];
+  HWY_ALIGN uint32_t totals[Links::kRowsPerBlock];
   for (uint32_t first = 0; first < block.rows; first += kTurn) {
     Part parts[kParts];
     for (size_t p = 0; p < kParts; ++p) {
-      // Lanes without a row stay at the block's base.
-      const auto bytes = hn::LoadU(kHigh, block.start + first + p * kWidth);
-      const U start = hn::IfThenElseZero(hn::FirstN(kU, lanes_from(first + p * kWidth, block.rows)),
-                                         hn::PromoteTo(kU, hn::PromoteTo(kLow, bytes)));
-      parts[p].column =
-          hn::Add(hn::Set(kU, block.base), hn::ShiftLeftSame(start, static_cast<int>(block.start_shift)));
+      const U start =
+          hn::PromoteTo(kU, hn::PromoteTo(kCode, hn::LoadU(kByte, block.start + first + p * kWidth)));
+      parts[p].column = hn::Add(hn::Set(kU, block.base - 1), hn::ShiftLeftSame(start, block.start_shift));
+      parts[p].total = hn::Zero(kU);
       parts[p].low = parts[p].high = hn::Zero(kD);
     }
     for (const uint16_t* HWY_RESTRICT as_long = block.rows_as_long; *as_long > first; ++as_long) {
       const size_t turn = std::min<size_t>(kTurn, *as_long - first);
       for (size_t p = 0; p < kParts && p * kWidth < turn; ++p)
-        decoder.add_links(link + 2 * p * kWidth, link + 2 * turn + p * kWidth, turn - p * kWidth, parts[p]);
-      link += turn * LinkBlock::kLinkBytes;
+        decoder.add_links(codes + p * kWidth, turn - p * kWidth, parts[p]);
+      codes += turn;
     }
     for (size_t p = 0; p < kParts; ++p) {
+      hn::Store(parts[p].total, kU, totals + first + p * kWidth);
       hn::Store(parts[p].low, kD, sums + first + p * kWidth);
       hn::Store(parts[p].high, kD, sums + first + p * kWidth + kWidth / 2);
     }
   }
   for (uint32_t place = 0; place < block.rows; ++place)
-    out[block.row[place]] = sums[place] * block.quantum(place);
+    out[block.row[place]] = sums[place] * (block.sum(place) / std::max(1u, totals[place]));
 }
 
 #endif
