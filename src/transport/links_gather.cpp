@@ -1,5 +1,8 @@
 // The product of packed links and values: a vector takes a code of each of sixteen rows at once, so that
-// decoding and sums need no exchange between lanes.
+// decoding and sums need no exchange between lanes. Codes are decoded some turns before their values are
+// asked for, and the values are fetched meanwhile: on smooth maps almost every link leads to a line of memory
+// of its own.
+#include <hwy/cache_control.h>
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -68,67 +71,147 @@ constexpr size_t kParts = kTurn / kWidth;
 using U = hn::Vec<hn::RebindToUnsigned<F> >;
 using D = hn::Vec<hn::Repartition<double, F> >;
 
-// Some of the rows that take turns.
-struct Part {
-  U column, total;
-  D low, high;  // sums
+// Turns of a group of sixteen rows, decoded.
+struct Turns {
+  static constexpr uint32_t kMost = 16;
+
+  HWY_ALIGN uint32_t columns[kMost * kTurn];
+  HWY_ALIGN uint32_t multiples[kMost * kTurn];
+  HWY_ALIGN uint32_t totals[kTurn];  // of the multiples of each row, where `ends`
+  uint32_t count;
+  uint32_t first;  // place of the group
+  bool ends;       // the group
 };
 
-struct Decoder {
-  U most_weight;
-  int weight_bits;
-  const float* HWY_RESTRICT values;
+// Walks through the codes of a block.
+class Decoder {
+ public:
+  Decoder(const BlockView& block, const float* HWY_RESTRICT values)
+      : block_(block),
+        values_(values),
+        most_weight_(hn::Set(kU, (1u << block.weight_bits) - 1)),
+        codes_(block.codes) {
+    begin_group(0);
+  }
 
-  // The next code of each row; `lanes` of them are there.
-  HWY_INLINE void add_links(const uint16_t* codes, size_t lanes, Part& part) const {
-    const U code = hn::IfThenElseZero(hn::FirstN(kU, lanes), hn::PromoteTo(kU, hn::LoadU(kCode, codes)));
-    const U step = hn::ShiftRightSame(code, weight_bits), weight = hn::And(code, most_weight);
+  // The next turns; false where there are none left.
+  HWY_INLINE bool next(Turns& turns) {
+    if (first_ >= block_.rows) return false;
+    turns.first = first_;
+    for (turns.count = 0; *as_long_ > first_ && turns.count < Turns::kMost; ++turns.count, ++as_long_) {
+      const size_t turn = std::min<size_t>(kTurn, *as_long_ - first_);
+      uint32_t* const columns = turns.columns + turns.count * kTurn;
+      for (size_t p = 0; p < kParts; ++p)
+        decode(p, turn > p * kWidth ? turn - p * kWidth : 0, columns, turns.multiples + turns.count * kTurn);
+      for (size_t i = 0; i < kTurn; ++i) hwy::Prefetch(values_ + columns[i]);
+      codes_ += turn;
+      hwy::Prefetch(codes_ + kCodesAhead);
+    }
+    turns.ends = *as_long_ <= first_;
+    if (turns.ends) {
+      for (size_t p = 0; p < kParts; ++p) hn::Store(totals_[p], kU, turns.totals + p * kWidth);
+      begin_group(first_ + kTurn);
+    }
+    return true;
+  }
+
+ private:
+  static constexpr size_t kCodesAhead = 512;
+
+  void begin_group(uint32_t first) {
+    first_ = first;
+    as_long_ = block_.rows_as_long;
+    if (first >= block_.rows) return;
+    for (size_t p = 0; p < kParts; ++p) {
+      const U start =
+          hn::PromoteTo(kU, hn::PromoteTo(kCode, hn::LoadU(kByte, block_.start + first + p * kWidth)));
+      columns_[p] = hn::Add(hn::Set(kU, block_.base - 1), hn::ShiftLeftSame(start, block_.start_shift));
+      totals_[p] = hn::Zero(kU);
+    }
+  }
+
+  // The next code of each row of a part; `lanes` of them are there.
+  HWY_INLINE void decode(size_t part, size_t lanes, uint32_t* columns, uint32_t* multiples) {
+    const U code = hn::IfThenElseZero(hn::FirstN(kU, lanes),
+                                      hn::PromoteTo(kU, hn::LoadU(kCode, codes_ + part * kWidth)));
+    const U step = hn::ShiftRightSame(code, block_.weight_bits), weight = hn::And(code, most_weight_);
     const auto is_far = hn::Eq(weight, hn::Zero(kU)), is_large = hn::Eq(step, hn::Zero(kU));
     // Times the largest step, times the largest weight.
-    const U far = hn::Sub(hn::ShiftLeftSame(step, LinkBlock::kCodeBits - weight_bits), step);
-    const U large = hn::Sub(hn::ShiftLeftSame(weight, weight_bits), weight);
+    const U far = hn::Sub(hn::ShiftLeftSame(step, LinkBlock::kCodeBits - block_.weight_bits), step);
+    const U large = hn::Sub(hn::ShiftLeftSame(weight, block_.weight_bits), weight);
     const U multiple = hn::IfThenElse(is_large, large, weight);
-    part.column = hn::Add(part.column, hn::IfThenElse(is_far, far, step));
-    part.total = hn::Add(part.total, multiple);
+    columns_[part] = hn::Add(columns_[part], hn::IfThenElse(is_far, far, step));
+    totals_[part] = hn::Add(totals_[part], multiple);
     // What has no weight reads the first value: it is at hand, and a row without codes has no column.
-    const U index = hn::IfThenZeroElse(is_far, part.column);
-    const auto times = hn::BitCast(kI, multiple);
-    const auto light = hn::GatherIndex(kF, values, hn::BitCast(kI, index));
-    part.low = hn::MulAdd(hn::PromoteTo(kD, hn::LowerHalf(kHalfI, times)),
-                          hn::PromoteTo(kD, hn::LowerHalf(kHalfF, light)), part.low);
-    part.high = hn::MulAdd(hn::PromoteTo(kD, hn::UpperHalf(kHalfI, times)),
-                           hn::PromoteTo(kD, hn::UpperHalf(kHalfF, light)), part.high);
+    hn::Store(hn::IfThenZeroElse(is_far, columns_[part]), kU, columns + part * kWidth);
+    hn::Store(multiple, kU, multiples + part * kWidth);
   }
+
+  const BlockView& block_;
+  const float* HWY_RESTRICT values_;
+  U most_weight_;
+  const uint16_t* HWY_RESTRICT codes_;
+  const uint16_t* HWY_RESTRICT as_long_;
+  uint32_t first_;
+  U columns_[kParts], totals_[kParts];
+};
+
+// The rows of a block, group by group.
+class Sums {
+ public:
+  Sums(const BlockView& block, const float* HWY_RESTRICT values, double* HWY_RESTRICT out)
+      : block_(block), values_(values), out_(out) {
+    clear();
+  }
+
+  HWY_INLINE void add(const Turns& turns) {
+    for (uint32_t k = 0; k < turns.count; ++k)
+      for (size_t p = 0; p < kParts; ++p) {
+        const size_t at = k * kTurn + p * kWidth;
+        const auto columns = hn::BitCast(kI, hn::Load(kU, turns.columns + at));
+        const auto multiples = hn::BitCast(kI, hn::Load(kU, turns.multiples + at));
+        const auto light = hn::GatherIndex(kF, values_, columns);
+        low_[p] = hn::MulAdd(hn::PromoteTo(kD, hn::LowerHalf(kHalfI, multiples)),
+                             hn::PromoteTo(kD, hn::LowerHalf(kHalfF, light)), low_[p]);
+        high_[p] = hn::MulAdd(hn::PromoteTo(kD, hn::UpperHalf(kHalfI, multiples)),
+                              hn::PromoteTo(kD, hn::UpperHalf(kHalfF, light)), high_[p]);
+      }
+    if (turns.ends) end_group(turns);
+  }
+
+ private:
+  void clear() {
+    for (size_t p = 0; p < kParts; ++p) low_[p] = high_[p] = hn::Zero(kD);
+  }
+
+  void end_group(const Turns& turns) {
+    HWY_ALIGN double sums[kTurn];
+    for (size_t p = 0; p < kParts; ++p) {
+      hn::Store(low_[p], kD, sums + p * kWidth);
+      hn::Store(high_[p], kD, sums + p * kWidth + kWidth / 2);
+    }
+    const uint32_t end = std::min(block_.rows, turns.first + kTurn);
+    for (uint32_t place = turns.first; place < end; ++place)
+      out_[block_.row[place]] =
+          sums[place - turns.first] * (block_.sum(place) / std::max(1u, turns.totals[place - turns.first]));
+    clear();
+  }
+
+  const BlockView& block_;
+  const float* HWY_RESTRICT values_;
+  double* HWY_RESTRICT out_;
+  D low_[kParts], high_[kParts];
 };
 
 void gather_block(const BlockView& block, const float* HWY_RESTRICT values, double* HWY_RESTRICT out) {
-  const Decoder decoder{hn::Set(kU, (1u << block.weight_bits) - 1), block.weight_bits, values};
-  const uint16_t* HWY_RESTRICT codes = block.codes;
-  HWY_ALIGN double sums[Links::kRowsPerBlock];
-  HWY_ALIGN uint32_t totals[Links::kRowsPerBlock];
-  for (uint32_t first = 0; first < block.rows; first += kTurn) {
-    Part parts[kParts];
-    for (size_t p = 0; p < kParts; ++p) {
-      const U start =
-          hn::PromoteTo(kU, hn::PromoteTo(kCode, hn::LoadU(kByte, block.start + first + p * kWidth)));
-      parts[p].column = hn::Add(hn::Set(kU, block.base - 1), hn::ShiftLeftSame(start, block.start_shift));
-      parts[p].total = hn::Zero(kU);
-      parts[p].low = parts[p].high = hn::Zero(kD);
-    }
-    for (const uint16_t* HWY_RESTRICT as_long = block.rows_as_long; *as_long > first; ++as_long) {
-      const size_t turn = std::min<size_t>(kTurn, *as_long - first);
-      for (size_t p = 0; p < kParts && p * kWidth < turn; ++p)
-        decoder.add_links(codes + p * kWidth, turn - p * kWidth, parts[p]);
-      codes += turn;
-    }
-    for (size_t p = 0; p < kParts; ++p) {
-      hn::Store(parts[p].total, kU, totals + first + p * kWidth);
-      hn::Store(parts[p].low, kD, sums + first + p * kWidth);
-      hn::Store(parts[p].high, kD, sums + first + p * kWidth + kWidth / 2);
-    }
+  Decoder decoder(block, values);
+  Sums sums(block, values, out);
+  Turns turns[2];
+  bool here = decoder.next(turns[0]);
+  for (size_t now = 0; here; now = 1 - now) {
+    here = decoder.next(turns[1 - now]);
+    sums.add(turns[now]);
   }
-  for (uint32_t place = 0; place < block.rows; ++place)
-    out[block.row[place]] = sums[place] * (block.sum(place) / std::max(1u, totals[place]));
 }
 
 #endif

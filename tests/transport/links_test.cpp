@@ -1,6 +1,7 @@
 #include "transport/links.h"
 
 #include <gmock/gmock.h>
+#include <hwy/targets.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -109,6 +110,15 @@ TEST(Links, GatherAgreesWithTheUnpackedRows) {
     std::vector<double> values(columns), out(links.rows);
     for (double& value : values) value = static_cast<double>(random() % 1000);
     gather(links, values, out);
+    // Products are exact in double and added in the order of the links.
+    const int64_t all = hwy::SupportedTargets();
+    for (int64_t left = all; left != 0; left &= left - 1) {
+      hwy::SetSupportedTargetsForTest(left & -left);
+      std::vector<double> again(links.rows);
+      gather(links, values, again);
+      EXPECT_EQ(again, out) << hwy::TargetName(left & -left);
+    }
+    hwy::SetSupportedTargetsForTest(0);
     const std::vector<double> sums = row_sums(links);
     BlockRows rows;
     for (uint32_t i = 0; i < links.rows; ++i) {
