@@ -30,24 +30,27 @@ uint64_t whole_multiples(std::span<const Link> row, double least, std::span<uint
   constexpr int kMostParts = 2 * static_cast<int>(kMostFineness);
   // A finer unit than rounding would take, at the most: with cosines for weights there is one, but far finer.
   const double most_multiple = kMostParts * static_cast<double>(row.size());
-  const auto is_whole = [](double exact) {
-    return std::abs(exact - static_cast<double>(static_cast<int64_t>(exact + 0.5))) <= 1e-4 + 1e-6 * exact;
+  // Weights are rounded to float, and the largest of a row makes up for what the others and E₀ lost.
+  const auto is_whole = [](double exact, double per_weight) {
+    const double rounded = static_cast<double>(static_cast<int64_t>(exact + 0.5));
+    return std::abs(exact - rounded) <= std::clamp(0x1p-23 * per_weight, 1e-4, 1e-2) + 1e-6 * exact;
   };
   // The unit is the least weight over the least common denominator of all weights over it.
+  const double per_least = 1 / least;
   int parts = 1;
   for (const Link& link : row) {
-    const double exact = weight_of(link) * (parts / least);
-    if (exact > most_multiple) return 0;
-    int more = 1;
-    while (!is_whole(more * exact))
-      if (++more * parts > kMostParts) return 0;
-    parts *= more;
+    const double over_least = weight_of(link) * per_least;
+    if (over_least > most_multiple) return 0;
+    int common = parts;
+    while (!is_whole(over_least * common, per_least * common))
+      if ((common += parts) > kMostParts) return 0;
+    parts = common;
   }
   uint64_t total = 0;
-  const double per_weight = parts / least;
+  const double per_weight = parts * per_least;
   for (size_t i = 0; i < row.size(); ++i) {
     const double exact = weight_of(row[i]) * per_weight;
-    if (exact > most_multiple || !is_whole(exact)) return 0;
+    if (exact > most_multiple || !is_whole(exact, per_weight)) return 0;
     multiples[i] = static_cast<uint32_t>(exact + 0.5);
     total += multiples[i];
   }

@@ -194,6 +194,25 @@ TEST(Links, StepsAndMultiplesStayExact) {
     }
 }
 
+// Eighths of hits that weigh alike, one of them with what rounding left of the row.
+TEST(Links, HitsThatWeighAlikeStayWhole) {
+  for (const double hits : {5.0, 37.0, 256.0, 4096.0}) {
+    std::vector<Link> row;
+    std::vector<double> eighths;
+    for (uint32_t i = 0; i < 12; ++i) {
+      eighths.push_back(i % 3 == 0 ? 1 + i % 8 : 8 * (1 + i % 4));
+      row.push_back({1 + 77 * i * i, static_cast<float>(eighths.back() / (8 * hits))});
+    }
+    row[7].weight += 6e-8f;
+    const std::vector<Link> packed = pack_and_unpack(row, 20000);
+    ASSERT_EQ(packed.size(), row.size());
+    const double quantum = static_cast<double>(packed[0].weight) / eighths[0];
+    for (size_t i = 0; i < row.size(); ++i)
+      EXPECT_NEAR(static_cast<double>(packed[i].weight), eighths[i] * quantum, 1.2e-7 * eighths[i] * quantum);
+    EXPECT_NEAR(quantum * 8 * hits, 1, 1e-6 + 1e-7 * hits);
+  }
+}
+
 // Sums that are multiples of their last bit, up to 1 and to 2 itself.
 TEST(Links, SumsAreExact) {
   for (const double scale : {1.0, 2.0, 0x1p-40}) {
