@@ -110,7 +110,7 @@ std::vector<glm::vec3> albedo_of_patches(const Surface& surface, const Albedo& a
   if (patches.kind == Patches::kTexels) return albedo.map.values;
   for (uint32_t patch = 0; patch < patches.count; ++patch) {
     const FacetNode node = facet_node(patches, patch);
-    const glm::dvec2 uv = node_uv(node.subdivision, node.node);
+    const glm::dvec2 uv = node_uv(node.node);
     const auto corners = facet_corners(surface, node.facet).texel;
     const auto at = [&](int c) {
       return glm::dvec3(albedo.map(corners[c].x % surface.width(), corners[c].y % surface.height()));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -21,27 +22,46 @@ constexpr uint64_t kMaxPatches = uint64_t{1} << 31;
 // at 0.1 and +0.5 % at 0.04; the second bounce of all bricks +0.4 and +0.2 %. Smaller ones see more of each
 // other in deep folds, which take longer to converge: WallHeight at 64 rays 169, 233 and 353 products at 0.1,
 // 0.06 and 0.04.
-constexpr double kNodeSize = 0.04;
+constexpr double kNodeSize = 0.01;
 
 double longest_edge_texels(const Surface& surface, uint32_t facet) {
   const auto p = facet_positions_texels(surface, facet);
   return std::max({glm::distance(p[0], p[1]), glm::distance(p[1], p[2]), glm::distance(p[2], p[0])});
 }
 
-int subdivision_of_run(const Surface& surface, uint32_t first_cell, uint32_t cells) {
-  for (uint32_t facet = 2 * first_cell; facet < 2 * (first_cell + cells); ++facet)
-    if (longest_edge_texels(surface, facet) > kLongestCoarseEdge) return kFineSubdivision;
-  return kCoarseSubdivision;
+std::array<uint16_t, 2> fine_facets(const Surface& surface, uint32_t first_cell, uint32_t cells) {
+  std::array<uint16_t, 2> fine{};
+  for (uint32_t facet = 0; facet < 2 * cells; ++facet)
+    if (longest_edge_texels(surface, 2 * first_cell + facet) > kLongestCoarseEdge)
+      fine[facet % 2] |= static_cast<uint16_t>(1u << facet / 2);
+  return fine;
 }
 
 struct NodePlace {
-  int a, b;  // column and row, in units of 1/k
+  int a, b;  // column and row, in quarters
 };
+constexpr NodePlace kNodePlaces[kFineNodes] = {{0, 0}, {2, 0}, {4, 0}, {0, 2}, {2, 2}, {0, 4}, {1, 0}, {3, 0},
+                                               {0, 1}, {1, 1}, {2, 1}, {3, 1}, {1, 2}, {0, 3}, {1, 3}};
 
-NodePlace node_place(int k, uint32_t node) {
-  int a = static_cast<int>(node), b = 0;
-  while (a > k - b) a -= k - b++ + 1;
-  return {a, b};
+constexpr std::array<std::array<uint8_t, 5>, 5> make_nodes_at() {
+  std::array<std::array<uint8_t, 5>, 5> nodes{};
+  for (size_t node = 0; node < kFineNodes; ++node)
+    nodes[static_cast<size_t>(kNodePlaces[node].b)][static_cast<size_t>(kNodePlaces[node].a)] =
+        static_cast<uint8_t>(node);
+  return nodes;
+}
+constexpr std::array<std::array<uint8_t, 5>, 5> kNodesAt = make_nodes_at();  // [row][column], in quarters
+
+uint32_t bits_in(uint32_t mask) { return static_cast<uint32_t>(std::popcount(mask)); }
+
+uint32_t patches_of_half(const PatchRun& run, uint32_t half) {
+  return kCoarseNodes * run.cells + (kFineNodes - kCoarseNodes) * bits_in(run.fine[half]);
+}
+
+// From the first patch of the half to that of the node.
+uint32_t begin_of_node(const PatchRun& run, uint32_t half, uint32_t node) {
+  if (node < kCoarseNodes) return node * run.cells;
+  return kCoarseNodes * run.cells + (node - kCoarseNodes) * bits_in(run.fine[half]);
 }
 
 uint32_t rows_of_tile(const PatchSet& patches, uint32_t first_row) {
@@ -57,9 +77,48 @@ PatchRun run_at(const PatchSet& patches, uint32_t row, uint32_t column) {
   result.first = patches.first[run];
   result.first_cell = row * patches.columns + column;
   result.cells = std::min(kRunCells, patches.columns - column);
-  const bool coarse =
-      patches.first[run + 1] - result.first == 2 * node_count(kCoarseSubdivision) * result.cells;
-  result.subdivision = coarse ? kCoarseSubdivision : kFineSubdivision;
+  result.fine = patches.fine[run];
+  return result;
+}
+
+// The run that patch `patch` is in.
+PatchRun run_of_patch(const PatchSet& patches, uint32_t patch) {
+  const auto after = std::upper_bound(patches.first.begin(), patches.first.end(), patch);
+  return patch_run(patches, static_cast<uint32_t>(after - patches.first.begin() - 1));
+}
+
+// Where light is known next to a point of a facet: places of nodes in units of 1/k, with their shares.
+struct NodeShare {
+  int a, b;
+  double share;
+};
+
+std::array<NodeShare, 3> node_shares(int k, glm::dvec2 uv) {
+  const double u = std::clamp(uv.x, 0.0, 1.0) * k, v = std::clamp(uv.y, 0.0, 1.0) * k;
+  const int a = std::min(static_cast<int>(u), k - 1), b = std::min(static_cast<int>(v), k - 1 - a);
+  const double fu = u - a, fv = std::min(v - b, 1.0);
+  // The half of the little square at (a, b) that is a triangle like the facet, or the other way round. On the
+  // facet's long side there is only the first kind, whatever fu + fv rounds to.
+  if (fu + fv <= 1 || a + b == k - 1) {
+    const double share_u = std::min(fu, 1.0), share_v = std::min(fv, 1 - share_u);
+    return {{{a + 1, b, share_u}, {a, b + 1, share_v}, {a, b, 1 - share_u - share_v}}};
+  }
+  return {{{a, b + 1, 1 - fu}, {a + 1, b, 1 - fv}, {a + 1, b + 1, fu + fv - 1}}};
+}
+
+// A facet in its run.
+struct FacetInRun {
+  PatchRun run;
+  uint32_t half, cell;
+  int k;
+  uint32_t patch(const NodeShare& share) const { return run.patch(half, node_at(k, share.a, share.b), cell); }
+};
+
+FacetInRun facet_in_run(const PatchSet& patches, uint32_t facet) {
+  const uint32_t cell = facet / 2, row = cell / patches.columns, column = cell - row * patches.columns;
+  const uint32_t cell_in_run = column % kRunCells;
+  FacetInRun result{run_at(patches, row, column - cell_in_run), facet % 2, cell_in_run, 0};
+  result.k = result.run.subdivision(result.half, cell_in_run);
   return result;
 }
 
@@ -80,8 +139,11 @@ PatchSet make_patches(const Surface& surface, Patches kind) {
     for (uint32_t column = 0; column < patches.columns; column += kRunCells) {
       const uint32_t cells = std::min(kRunCells, patches.columns - column);
       for (uint32_t row = first_row; row < first_row + rows_of_tile(patches, first_row); ++row) {
-        patches.first.push_back(static_cast<uint32_t>(count));
-        count += 2 * node_count(subdivision_of_run(surface, row * patches.columns + column, cells)) * cells;
+        PatchRun run{static_cast<uint32_t>(count), row * patches.columns + column, cells, {}};
+        run.fine = fine_facets(surface, run.first_cell, cells);
+        patches.first.push_back(run.first);
+        patches.fine.push_back(run.fine);
+        count += patches_of_half(run, 0) + patches_of_half(run, 1);
         if (count > kMaxPatches)
           throw InputError(
               fmt::format("more than {} patches, expected a smaller map, or texels as patches", kMaxPatches));
@@ -92,9 +154,19 @@ PatchSet make_patches(const Surface& surface, Patches kind) {
   return patches;
 }
 
-glm::dvec2 node_uv(int k, uint32_t node) {
-  const NodePlace place = node_place(k, node);
-  return glm::dvec2(place.a, place.b) / static_cast<double>(k);
+glm::dvec2 node_uv(uint32_t node) {
+  return glm::dvec2(kNodePlaces[node].a, kNodePlaces[node].b) / static_cast<double>(kFineSubdivision);
+}
+
+uint32_t node_at(int k, int column, int row) {
+  const int quarters = kFineSubdivision / k;
+  return kNodesAt[static_cast<size_t>(row * quarters)][static_cast<size_t>(column * quarters)];
+}
+
+uint32_t PatchRun::patch(uint32_t half, uint32_t node, uint32_t cell_in_run) const {
+  const uint32_t of_half = first + (half == 0 ? 0 : patches_of_half(*this, 0));
+  return of_half + begin_of_node(*this, half, node) +
+         bits_in(cells_with(half, node) & ((1u << cell_in_run) - 1));
 }
 
 PatchRun patch_run(const PatchSet& patches, uint32_t run) {
@@ -104,54 +176,52 @@ PatchRun patch_run(const PatchSet& patches, uint32_t run) {
   return run_at(patches, first_row + in_row_of_tiles % rows, in_row_of_tiles / rows * kRunCells);
 }
 
-PatchRun run_of_patch(const PatchSet& patches, uint32_t patch) {
-  const auto after = std::upper_bound(patches.first.begin(), patches.first.end(), patch);
-  return patch_run(patches, static_cast<uint32_t>(after - patches.first.begin() - 1));
+NodeGroup group_of_patch(const PatchSet& patches, uint32_t patch) {
+  NodeGroup group{run_of_patch(patches, patch), 0, 0, 0};
+  const PatchRun& run = group.run;
+  uint32_t begin = run.first;
+  if (const uint32_t first_half = patches_of_half(run, 0); patch - begin >= first_half) {
+    group.half = 1;
+    begin += first_half;
+  }
+  const uint32_t in_half = patch - begin, coarse = kCoarseNodes * run.cells;
+  group.node = in_half < coarse ? in_half / run.cells
+                                : kCoarseNodes + (in_half - coarse) / bits_in(run.fine[group.half]);
+  group.first = begin + begin_of_node(run, group.half, group.node);
+  return group;
 }
 
 FacetNode facet_node(const PatchSet& patches, uint32_t patch) {
-  const PatchRun run = run_of_patch(patches, patch);
-  const uint32_t in_run = patch - run.first, nodes = node_count(run.subdivision);
-  const uint32_t cell = run.first_cell + in_run % run.cells, half_and_node = in_run / run.cells;
-  return {2 * cell + half_and_node / nodes, run.subdivision, half_and_node % nodes};
+  const NodeGroup group = group_of_patch(patches, patch);
+  uint32_t cells = group.run.cells_with(group.half, group.node);
+  for (uint32_t before = patch - group.first; before > 0; --before) cells &= cells - 1;
+  const uint32_t cell = static_cast<uint32_t>(std::countr_zero(cells));
+  return {2 * (group.run.first_cell + cell) + group.half, group.run.subdivision(group.half, cell),
+          group.node};
 }
 
 std::array<PatchShare, 3> patch_shares(const PatchSet& patches, uint32_t facet, glm::dvec2 uv) {
-  const uint32_t cell = facet / 2, row = cell / patches.columns, column = cell - row * patches.columns;
-  const PatchRun run = run_at(patches, row, column / kRunCells * kRunCells);
-  const int k = run.subdivision;
-  const double u = std::clamp(uv.x, 0.0, 1.0) * k, v = std::clamp(uv.y, 0.0, 1.0) * k;
-  const int a = std::min(static_cast<int>(u), k - 1), b = std::min(static_cast<int>(v), k - 1 - a);
-  const double fu = u - a, fv = std::min(v - b, 1.0);
-  const auto patch_at = [&](int column_of_node, int row_of_node) {
-    return run.patch(facet % 2, node_at(k, column_of_node, row_of_node), column % kRunCells);
-  };
-  // The half of the little square at (a, b) that is a triangle like the facet, or the other way round. On the
-  // facet's long side there is only the first kind, whatever fu + fv rounds to.
-  if (fu + fv <= 1 || a + b == k - 1) {
-    const double share_u = std::min(fu, 1.0), share_v = std::min(fv, 1 - share_u);
-    return {{{patch_at(a + 1, b), share_u},
-             {patch_at(a, b + 1), share_v},
-             {patch_at(a, b), 1 - share_u - share_v}}};
-  }
-  return {
-      {{patch_at(a, b + 1), 1 - fu}, {patch_at(a + 1, b), 1 - fv}, {patch_at(a + 1, b + 1), fu + fv - 1}}};
+  const FacetInRun place = facet_in_run(patches, facet);
+  const std::array<NodeShare, 3> nodes = node_shares(place.k, uv);
+  std::array<PatchShare, 3> shares;
+  for (size_t i = 0; i < nodes.size(); ++i) shares[i] = {place.patch(nodes[i]), nodes[i].share};
+  return shares;
 }
 
 uint32_t draw_patch(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double choice) {
-  const std::array<PatchShare, 3> shares = patch_shares(patches, facet, uv);
-  if (choice < shares[0].share) return shares[0].patch;
-  return choice < shares[0].share + shares[1].share ? shares[1].patch : shares[2].patch;
+  const FacetInRun place = facet_in_run(patches, facet);
+  const std::array<NodeShare, 3> nodes = node_shares(place.k, uv);
+  const size_t drawn = choice < nodes[0].share ? 0 : choice < nodes[0].share + nodes[1].share ? 1 : 2;
+  return place.patch(nodes[drawn]);
 }
 
-glm::dvec2 node_start_uv(int k, uint32_t node, glm::dvec2 point) {
-  const double size = kNodeSize / k;
-  return (1 - size) * node_uv(k, node) + size * point;
+glm::dvec2 node_start_uv(uint32_t node, glm::dvec2 point) {
+  return (1 - kNodeSize) * node_uv(node) + kNodeSize * point;
 }
 
 double node_area_share(int k, uint32_t node) {
-  const NodePlace place = node_place(k, node);
-  const int a = place.a, b = place.b, c = k - a - b;
+  const int quarters = kFineSubdivision / k;
+  const int a = kNodePlaces[node].a / quarters, b = kNodePlaces[node].b / quarters, c = k - a - b;
   const int sides = (a == 0) + (b == 0) + (c == 0);
   // Linear: each of the k² triangles around the node adds a third of itself, six inside, three along a side
   // of the facet, one at its corner. Quadratic: of each four of them that make a larger triangle, the nodes
@@ -173,7 +243,7 @@ glm::dvec2 patch_position_texels(const Surface& surface, const PatchSet& patches
     return {patch % width, patch / width};
   }
   const FacetNode node = facet_node(patches, patch);
-  return facet_point_texels(surface, node.facet, node_uv(node.subdivision, node.node));
+  return facet_point_texels(surface, node.facet, node_uv(node.node));
 }
 
 }  // namespace hemibake

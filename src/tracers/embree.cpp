@@ -129,7 +129,7 @@ EmbreeTracer::EmbreeTracer(const Surface& surface, const RayOptions& options)
   const double smallest_block = std::min(block_width_, block_height_);
   cut_distance_texels_ = std::min(std::max(1e5 * range, 16 * smallest_block), 1e6 * smallest_block);
   for (const int k : {kCoarseSubdivision, kFineSubdivision})
-    for (const uint32_t node : {node_at(k, 0, 0), node_at(k, 1, 0)})
+    for (const uint32_t node : {0u, 1u})
       node_rays_[node_kind(k, node)] = make_node_rays(rays_per_node(options.rays, k, node));
   build_scene();
 }
@@ -400,7 +400,7 @@ void EmbreeTracer::trace_node(uint32_t patch, bool with_links, Row& row, TracerC
   const auto start_of = [&](size_t i) {
     const glm::dvec2 point = sample_uniform_triangle(
         {shift_modulo_one(set.points[i].x, shift_u), shift_modulo_one(set.points[i].y, shift_v)});
-    const glm::dvec2 uv = node_start_uv(node.subdivision, node.node, point);
+    const glm::dvec2 uv = node_start_uv(node.node, point);
     // The height is taken at the rounded position: on a steep wall that rounding is more than the lift.
     const float x = static_cast<float>(corners[0].x + leg * uv.x),
                 y = static_cast<float>(corners[0].y + leg * uv.y);

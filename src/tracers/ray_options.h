@@ -26,7 +26,7 @@ inline constexpr double kCornerRays = 3;
 // no more, some in a deep fold would only meet each other and keep their light for ever.
 inline int rays_per_node(int rays, int k, uint32_t node) {
   const double rays_of_others = kFacetRays * rays / (node_count(k) - 3 + 3 * kCornerRays);
-  const double wanted = (is_corner(k, node) ? kCornerRays : 1) * rays_of_others;
+  const double wanted = (is_corner(node) ? kCornerRays : 1) * rays_of_others;
   return std::max(std::min(rays, 8), static_cast<int>(std::lround(wanted)));
 }
 
@@ -34,7 +34,7 @@ inline int rays_per_node(int rays, int k, uint32_t node) {
 // alike.
 inline constexpr size_t kNodeKinds = 4;
 constexpr size_t node_kind(int k, uint32_t node) {
-  return (k == kFineSubdivision ? 2 : 0) + (is_corner(k, node) ? 1 : 0);
+  return (k == kFineSubdivision ? 2 : 0) + (is_corner(node) ? 1 : 0);
 }
 
 // Steps of the golden ratio: any number of them is spread evenly over the unit interval.

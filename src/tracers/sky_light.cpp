@@ -97,7 +97,7 @@ SurfacePoint texel_center(const Surface& surface, size_t texel) {
 // One of the points that a patch looks from; u in the unit square.
 SurfacePoint patch_start(const HeightWalk& walk, const PatchSet& patches, size_t patch, const glm::dvec2& u) {
   const FacetNode node = facet_node(patches, static_cast<uint32_t>(patch));
-  const glm::dvec2 at = node_start_uv(node.subdivision, node.node, sample_uniform_triangle(u));
+  const glm::dvec2 at = node_start_uv(node.node, sample_uniform_triangle(u));
   return walk.point_on_facet(node.facet, at.x, at.y);
 }
 

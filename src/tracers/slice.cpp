@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -41,8 +42,8 @@ static_assert(kSliceLanes == kRunCells);
 // The receivers asked for of one packet.
 struct AskedPacket {
   SlicePacket packet;
-  int first_lane, end_lane;
-  uint32_t receiver;     // of lane 0; the next lane's is one more
+  uint32_t lanes;        // bits of those asked for
+  uint32_t receiver;     // of the first of them; the next one's is one more
   uint32_t first_facet;  // of lane 0, where the receivers are nodes; the next lane's is two more
 };
 
@@ -52,6 +53,13 @@ struct RowPlaces {
   uint32_t map_width = 0xffffffff, tile_width = 0;
   size_t of(uint32_t number) const { return size_t{number / map_width} * tile_width + number % map_width; }
 };
+
+// The lowest `count` of the bits set, or all of them.
+uint32_t first_bits(uint32_t bits, uint32_t count) {
+  uint32_t others = bits;
+  for (; count > 0 && others != 0; --count) others &= others - 1;
+  return bits & ~others;
+}
 
 glm::dvec3 mean_direction(const SliceSums& sums, size_t lane) {
   return {sums.x[lane], sums.y[lane], sums.z[lane]};
@@ -86,7 +94,7 @@ class SliceTracer final : public Tracer {
   int turn_of(const SlicePaths& paths, uint64_t stream, uint64_t place) const;
   void choose_hits(int per_slice, uint64_t stream, uint64_t place, uint64_t step, SlicePacket& packet) const;
   SlicePacket texel_packet(int x, int y) const;
-  SlicePacket node_packet(const PatchRun& run, uint32_t half, uint32_t node) const;
+  SlicePacket node_packet(const NodeGroup& group) const;
   std::span<const PacketView> look(const SlicePaths& paths, WalkFor what,
                                    std::span<const SlicePacket> packets) const;
   void find_missed_hits(const SlicePaths& paths, const SlicePacket& packet, PacketView& view) const;
@@ -133,9 +141,10 @@ SlicePacket SliceTracer::texel_packet(int x, int y) const {
   SlicePacket packet;
   packet.x = x;
   packet.y = y;
-  packet.lanes = std::min(kSliceLanes, surface_.width() - x);
+  const int lanes = std::min(kSliceLanes, surface_.width() - x);
+  packet.lanes = (1u << lanes) - 1;
   packet.turn = turn_of(families_.texels, kTexelTurn, surface_.heights_m.index(x, y));
-  for (int lane = 0; lane < packet.lanes; ++lane) {
+  for (int lane = 0; lane < lanes; ++lane) {
     const size_t l = static_cast<size_t>(lane);
     const glm::vec3& n = surface_.normals(x + lane, y);
     packet.base[l] = *field_.heights.at(x + lane, y) + static_cast<float>(options_.lift_texels);
@@ -146,17 +155,17 @@ SlicePacket SliceTracer::texel_packet(int x, int y) const {
   return packet;
 }
 
-SlicePacket SliceTracer::node_packet(const PatchRun& run, uint32_t half, uint32_t node) const {
-  const SlicePaths& paths = families_.nodes[node_family(run.subdivision, half, node)];
-  const uint32_t first_patch = run.patch(half, node, 0);
-  const int corner = static_cast<int>(half);
+SlicePacket SliceTracer::node_packet(const NodeGroup& group) const {
+  const PatchRun& run = group.run;
+  const SlicePaths& paths = families_.nodes[node_family(group.half, group.node)];
+  const int corner = static_cast<int>(group.half);
   SlicePacket packet;
   packet.x = static_cast<int>(run.first_cell % patches_.columns);
   packet.y = static_cast<int>(run.first_cell / patches_.columns);
-  packet.lanes = static_cast<int>(run.cells);
-  packet.turn = turn_of(paths, kNodeTurn, first_patch);
+  packet.lanes = run.cells_with(group.half, group.node);
+  packet.turn = turn_of(paths, kNodeTurn, group.first);
   packet.corner = static_cast<float>(corner);
-  for (int lane = 0; lane < packet.lanes; ++lane) {
+  for (int lane = 0; lane < static_cast<int>(run.cells); ++lane) {
     const size_t l = static_cast<size_t>(lane);
     const auto height = [&](int dx, int dy) {
       return *field_.heights.at(packet.x + lane + dx, packet.y + dy);
@@ -166,7 +175,7 @@ SlicePacket SliceTracer::node_packet(const PatchRun& run, uint32_t half, uint32_
     packet.rim_x[l] = packet.plane_x[l] = height(1, corner) - height(0, corner);
     packet.rim_y[l] = packet.plane_y[l] = height(corner, 1) - height(corner, 0);
   }
-  choose_hits(kNodeHits, kNodePlace, first_patch, 1, packet);
+  choose_hits(kNodeHits, kNodePlace, uint64_t{group.first} * kSliceLanes, 1, packet);
   return packet;
 }
 
@@ -196,8 +205,8 @@ void SliceTracer::find_missed_hits(const SlicePaths& paths, const SlicePacket& p
   SlicePacket missed = packet;
   missed.hits_per_weight = {};
   bool any = false;
-  for (size_t lane = 0; lane < static_cast<size_t>(packet.lanes); ++lane) {
-    if (!view.hits[lane].empty()) continue;
+  for (size_t lane = 0; lane < kSliceLanes; ++lane) {
+    if ((packet.lanes >> lane & 1) == 0 || !view.hits[lane].empty()) continue;
     const glm::dvec3 normal_over_z(-packet.rim_x[lane], -packet.rim_y[lane], 1);
     const double whole = glm::dot(normal_over_z, mean_direction(view.hemisphere, lane));
     const double blocked = whole - glm::dot(normal_over_z, mean_direction(view.sky, lane));
@@ -285,16 +294,17 @@ void SliceTracer::answer(const SlicePaths& paths, bool of_nodes, bool with_links
     for (const AskedPacket& one : piece) packets.push_back(one.packet);
     const std::span<const PacketView> views =
         look(paths, with_links ? WalkFor::kHits : WalkFor::kSky, packets);
-    for (size_t i = 0; i < piece.size(); ++i)
-      for (int lane = piece[i].first_lane; lane < piece[i].end_lane; ++lane) {
-        const uint32_t receiver = piece[i].receiver + static_cast<uint32_t>(lane);
-        const uint32_t own_facet =
-            of_nodes ? piece[i].first_facet + 2 * static_cast<uint32_t>(lane) : kNoFacet;
+    for (size_t i = 0; i < piece.size(); ++i) {
+      uint32_t receiver = piece[i].receiver;
+      for (uint32_t lanes = piece[i].lanes; lanes != 0; lanes &= lanes - 1, ++receiver) {
+        const auto lane = static_cast<uint32_t>(std::countr_zero(lanes));
+        const uint32_t own_facet = of_nodes ? piece[i].first_facet + 2 * lane : kNoFacet;
         const double choice =
             unit_interval(mix_bits(options_.seed, of_nodes ? kNodeChoice : kTexelChoice, receiver));
-        fill_row(paths, packets[i], views[i], static_cast<size_t>(lane), own_facet, choice, with_links,
+        fill_row(paths, packets[i], views[i], lane, own_facet, choice, with_links,
                  rows[places.of(receiver - first)], counts);
       }
+    }
   }
 }
 
@@ -304,9 +314,9 @@ void SliceTracer::ask_texels(uint32_t first, uint32_t count, std::vector<AskedPa
   for (uint32_t texel = first; texel < end;) {
     const int x = static_cast<int>(texel % width), lane = x % kSliceLanes;
     const SlicePacket packet = texel_packet(x - lane, static_cast<int>(texel / width));
-    const int lanes = std::min(packet.lanes - lane, static_cast<int>(end - texel));
-    asked.push_back({packet, lane, lane + lanes, texel - static_cast<uint32_t>(lane), kNoFacet});
-    texel += static_cast<uint32_t>(lanes);
+    const uint32_t lanes = first_bits(packet.lanes >> lane, end - texel) << lane;
+    asked.push_back({packet, lanes, texel, kNoFacet});
+    texel += static_cast<uint32_t>(std::popcount(lanes));
   }
 }
 
@@ -331,15 +341,13 @@ void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> 
   const uint32_t end = first + static_cast<uint32_t>(rows.size());
   std::vector<std::vector<AskedPacket>> asked(families_.nodes.size());
   for (uint32_t patch = first; patch < end;) {
-    const PatchRun run = run_of_patch(patches_, patch);
-    const uint32_t nodes = node_count(run.subdivision), in_run = patch - run.first;
-    const uint32_t half = in_run / run.cells / nodes, node = in_run / run.cells % nodes,
-                   lane = in_run % run.cells;
-    const uint32_t count = std::min(run.cells - lane, end - patch);
-    asked[node_family(run.subdivision, half, node)].push_back(
-        {node_packet(run, half, node), static_cast<int>(lane), static_cast<int>(lane + count), patch - lane,
-         2 * run.first_cell + half});
-    patch += count;
+    const NodeGroup group = group_of_patch(patches_, patch);
+    const SlicePacket packet = node_packet(group);
+    const uint32_t begun = first_bits(packet.lanes, patch - group.first);
+    const uint32_t lanes = first_bits(packet.lanes & ~begun, end - patch);
+    asked[node_family(group.half, group.node)].push_back(
+        {packet, lanes, patch, 2 * group.run.first_cell + group.half});
+    patch += static_cast<uint32_t>(std::popcount(lanes));
   }
   for (size_t family = 0; family < asked.size(); ++family)
     answer(families_.nodes[family], true, with_links, asked[family], first, {}, rows, counts);

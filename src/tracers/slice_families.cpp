@@ -16,7 +16,7 @@ constexpr uint64_t kTurn = 0x511ce08, kNodeShift = 0x511ce02;
 // together see the whole circle; with more rotations fewer packets share a path. The families of nodes are
 // rotated apart.
 constexpr int kTexelPaths = 512, kNodePaths = 32;
-// Segments kept ready in a family, about 530 bytes each. There is one family of texels and 42 of nodes.
+// Segments kept ready in a family, about 530 bytes each. There is one family of texels and 30 of nodes.
 constexpr int kReadyTexelSegments = 16384, kReadyNodeSegments = 1024;
 
 // A node looks for links along some of its azimuths only. What it sees of the sky is the light of its patch,
@@ -65,7 +65,7 @@ SlicePaths make_texel_paths(int azimuths, uint64_t seed) {
 }
 
 // Each azimuth starts from another low-discrepancy point of the small copy of the facet at the node.
-SlicePaths make_node_paths(int azimuths, uint64_t seed, int k, uint32_t half, uint32_t node) {
+SlicePaths make_node_paths(int azimuths, uint64_t seed, uint32_t half, uint32_t node) {
   const auto make_path = [&](int turn, int azimuth, double angle) {
     const uint64_t place = 2 * static_cast<uint64_t>(turn);
     const double shift_u = unit_interval(mix_bits(seed, kNodeShift, place));
@@ -73,12 +73,12 @@ SlicePaths make_node_paths(int azimuths, uint64_t seed, int k, uint32_t half, ui
     const uint32_t index = static_cast<uint32_t>(azimuth);
     const glm::dvec2 point = sample_uniform_triangle({shift_modulo_one(radical_inverse(2, index), shift_u),
                                                       shift_modulo_one(radical_inverse(3, index), shift_v)});
-    const glm::dvec2 uv = node_start_uv(k, node, point);
+    const glm::dvec2 uv = node_start_uv(node, point);
     return make_slice_path(half == 0 ? uv : 1.0 - uv, angle, true);
   };
-  const int per_linked = is_corner(k, node) ? kAzimuthsPerLinkedOfCorner : kAzimuthsPerLinked;
+  const int per_linked = is_corner(node) ? kAzimuthsPerLinkedOfCorner : kAzimuthsPerLinked;
   SlicePaths family = make_paths(per_linked * linked_azimuths_of_node(azimuths), kNodePaths,
-                                 turn_offset(seed, 1 + node_family(k, half, node)), make_path);
+                                 turn_offset(seed, 1 + node_family(half, node)), make_path);
   family.azimuths_per_linked = per_linked;
   keep_ready(kReadyNodeSegments, family);
   return family;
@@ -90,16 +90,12 @@ SliceFamilies make_slice_families(int azimuths, Patches patches, uint64_t seed) 
   SliceFamilies families;
   families.texels = make_texel_paths(azimuths, seed);
   if (patches != Patches::kFacets) return families;
-  for (const int k : {kCoarseSubdivision, kFineSubdivision})
-    for (uint32_t half = 0; half < 2; ++half)
-      for (uint32_t node = 0; node < node_count(k); ++node)
-        families.nodes.push_back(make_node_paths(azimuths, seed, k, half, node));
+  for (uint32_t half = 0; half < 2; ++half)
+    for (uint32_t node = 0; node < kFineNodes; ++node)
+      families.nodes.push_back(make_node_paths(azimuths, seed, half, node));
   return families;
 }
 
-size_t node_family(int k, uint32_t half, uint32_t node) {
-  const uint32_t coarser = k == kFineSubdivision ? 2 * node_count(kCoarseSubdivision) : 0;
-  return coarser + half * node_count(k) + node;
-}
+size_t node_family(uint32_t half, uint32_t node) { return half * kFineNodes + node; }
 
 }  // namespace hemibake

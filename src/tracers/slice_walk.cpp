@@ -141,9 +141,9 @@ HWY_INLINE Lanes PathWalk::start(const SlicePacket& packet) const {
   const V top = hn::Set(kF, field_.top);
   for (size_t p = 0; p < kParts; ++p) {
     lanes.to_top.part[p] = hn::Sub(hn::Sub(top, lanes.base.part[p]), lanes.rise.part[p]);
-    const int walked = std::clamp(packet.lanes - static_cast<int>(p * kWidth), 0, static_cast<int>(kWidth));
-    V slope =
-        hn::IfThenElse(hn::FirstN(kF, static_cast<size_t>(walked)), lanes.rim.part[p], hn::Set(kF, kClosed));
+    const uint32_t walked = packet.lanes >> p * kWidth;
+    const uint8_t bits[8] = {static_cast<uint8_t>(walked), static_cast<uint8_t>(walked >> 8)};
+    V slope = hn::IfThenElse(hn::LoadMaskBits(kF, bits), lanes.rim.part[p], hn::Set(kF, kClosed));
     if (blocks_below_ && options_.what != WalkFor::kStretches) slope = hn::Max(slope, hn::Zero(kF));
     lanes.slope.part[p] = slope;
     if (options_.what == WalkFor::kStretches) lanes.above.part[p] = cosine_above(slope, lanes.rim.part[p]);

@@ -21,7 +21,7 @@ inline constexpr int kHitsPerSlice = 8;
 // Receivers side by side: lane l starts in the cell (x + l, y).
 struct SlicePacket {
   int x = 0, y = 0;
-  int lanes = kSliceLanes;                // the others are not walked
+  uint32_t lanes = 0xffff;                // bits; the others are not walked
   int turn = 0;                           // which rotation of the azimuths
   float corner = 0;                       // of the cell, 0: (x, y), 1: (x + 1, y + 1)
   LaneArray<float> base{};                // height there, texels

@@ -108,8 +108,9 @@ void tell_by_every_other_node(const PatchSet& patches, std::vector<double>& ligh
   parallel_for(runs, 256, [&](size_t begin, size_t end) {
     for (size_t r = begin; r < end; ++r) {
       const PatchRun run = patch_run(patches, static_cast<uint32_t>(r));
-      const int k = run.subdivision;
-      for (uint32_t half = 0; half < 2; ++half)
+      for (uint32_t facet = 0; facet < 2 * run.cells; ++facet) {
+        const uint32_t half = facet % 2, cell = facet / 2;
+        const int k = run.subdivision(half, cell);
         for (int b = 0; b <= k; ++b)
           for (int a = 0; a + b <= k; ++a) {
             const int odd_a = a % 2, odd_b = b % 2;
@@ -118,10 +119,10 @@ void tell_by_every_other_node(const PatchSet& patches, std::vector<double>& ligh
             const uint32_t node = node_at(k, a, b),
                            one = node_at(k, a - odd_a, b + (odd_a == 1 ? odd_b : -1)),
                            other = node_at(k, a + odd_a, b - (odd_a == 1 ? odd_b : -1));
-            for (uint32_t cell = 0; cell < run.cells; ++cell)
-              light[run.patch(half, node, cell)] =
-                  0.5 * (light[run.patch(half, one, cell)] + light[run.patch(half, other, cell)]);
+            light[run.patch(half, node, cell)] =
+                0.5 * (light[run.patch(half, one, cell)] + light[run.patch(half, other, cell)]);
           }
+      }
     }
   });
 }

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <map>
 
 #include "sampling/low_discrepancy.h"
 #include "support/maps.h"
 #include "support/patch_means.h"
+#include "surface/facets.h"
 
 namespace hemibake {
 namespace {
@@ -29,7 +31,7 @@ TEST(Patches, TexelsAreTheirOwn) {
   EXPECT_EQ(patch_position_texels(surface, patches, 16), glm::dvec2(2, 2));
 }
 
-TEST(Patches, EveryNodeOfEveryFacetOnceAndAlikeInARun) {
+TEST(Patches, EveryNodeOfEveryFacetOnce) {
   for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
     const Surface surface = half_rough_surface(edge);
     const PatchSet patches = make_patches(surface, Patches::kFacets);
@@ -38,17 +40,21 @@ TEST(Patches, EveryNodeOfEveryFacetOnceAndAlikeInARun) {
       const FacetNode node = facet_node(patches, patch);
       EXPECT_EQ(nodes_of[node.facet] >> node.node & 1, 0u);
       nodes_of[node.facet] |= 1u << node.node;
-      EXPECT_EQ(node.subdivision, facet_node(patches, run_of_patch(patches, patch).first).subdivision);
+      const NodeGroup group = group_of_patch(patches, patch);
+      EXPECT_EQ(group.node, node.node);
+      EXPECT_EQ(group.run.patch(group.half, group.node, node.facet / 2 - group.run.first_cell), patch);
       // Its own light is all it draws.
-      const glm::dvec2 uv = node_uv(node.subdivision, node.node);
+      const glm::dvec2 uv = node_uv(node.node);
       for (const double choice : {0.0, 0.5, 0.999999})
         EXPECT_EQ(draw_patch(patches, node.facet, uv, choice), patch);
     }
     EXPECT_EQ(nodes_of.size(), facet_count(surface));
     for (const auto& [facet, nodes] : nodes_of) {
-      const uint32_t column = facet / 2 % facet_columns(surface);
-      EXPECT_EQ(nodes, (1u << node_count(column < kRunCells ? kCoarseSubdivision : kFineSubdivision)) - 1)
-          << facet;
+      const auto corners = facet_positions_texels(surface, facet);
+      double longest = 0;
+      for (size_t i = 0; i < 3; ++i)
+        longest = std::max(longest, glm::distance(corners[i], corners[(i + 1) % 3]));
+      EXPECT_EQ(nodes, (1u << (longest > 2 ? 15 : 6)) - 1) << facet;
     }
   }
 }
@@ -61,7 +67,7 @@ TEST(Patches, ATileIsOnePieceOfMemory) {
     for (const uint32_t column : {0u, 16u, 32u})
       for (uint32_t row = first_row; row < std::min(20u, first_row + 16); ++row, ++run) {
         EXPECT_EQ(patch_run(patches, run).first_cell, row * 39 + column);
-        EXPECT_EQ(run_of_patch(patches, patches.first[run + 1] - 1).first, patches.first[run]);
+        EXPECT_EQ(group_of_patch(patches, patches.first[run + 1] - 1).run.first, patches.first[run]);
       }
   EXPECT_EQ(patches.first.size(), run + 1);
 }
@@ -88,7 +94,7 @@ TEST(Patches, DrawsReproduceLinearLight) {
       for (int i = 0; i < kChoices; ++i) {
         const FacetNode node = facet_node(patches, draw_patch(patches, facet, uv, (i + 0.5) / kChoices));
         EXPECT_EQ(node.facet, facet);
-        mean += node_uv(node.subdivision, node.node) / static_cast<double>(kChoices);
+        mean += node_uv(node.node) / static_cast<double>(kChoices);
       }
       // The choices are a comb of 3000 teeth; each of the three shares is off by less than one of them.
       EXPECT_NEAR(mean.x, uv.x, 1.0 / kChoices) << facet << ' ' << uv.x << ' ' << uv.y;
@@ -104,7 +110,7 @@ TEST(Patches, AreaShares) {
     double one = 0, u = 0, v = 0, uu = 0, uv = 0;
     for (uint32_t node = 0; node < node_count(k); ++node) {
       const double share = node_area_share(k, node);
-      const glm::dvec2 at = node_uv(k, node);
+      const glm::dvec2 at = node_uv(node);
       EXPECT_GE(share, 0);
       one += share;
       u += share * at.x;
@@ -135,7 +141,7 @@ TEST(Patches, StartsLieOnTheFacetNearTheNode) {
   for (const int k : {kCoarseSubdivision, kFineSubdivision})
     for (uint32_t node = 0; node < node_count(k); ++node)
       for (const glm::dvec2 point : {glm::dvec2(0.3, 0.3), {0.01, 0.9}, {0.9, 0.05}}) {
-        const glm::dvec2 start = node_start_uv(k, node, point), at = node_uv(k, node);
+        const glm::dvec2 start = node_start_uv(node, point), at = node_uv(node);
         EXPECT_TRUE(start.x > 0 && start.y > 0 && start.x + start.y < 1);
         EXPECT_LT(std::max(std::abs(start.x - at.x), std::abs(start.y - at.y)), 0.11 / k);
       }
