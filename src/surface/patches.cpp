@@ -16,12 +16,11 @@ namespace {
 // Links keep indices of 32 bits; the highest bit is left to how they are stored.
 constexpr uint64_t kMaxPatches = uint64_t{1} << 31;
 
-// Size of the copy of the facet a node looks from, over one of the k² triangles. Larger ones average away
-// what nodes are for: at the bottom of a pit they look from further up. Measured against the referee, 20
-// bounces at albedo 1 where AO is below 0.1: WallHeight +8 % at 0.1, +3 % at 0.05, −1 % at 0.02, bricks +4 %
-// at 0.1 and +0.5 % at 0.04; the second bounce of all bricks +0.4 and +0.2 %. Smaller ones see more of each
-// other in deep folds, which take longer to converge: WallHeight at 64 rays 169, 233 and 353 products at 0.1,
-// 0.06 and 0.04.
+// Size of the copy of the facet a node looks from, over the facet. Larger ones average away what nodes are
+// for: at the bottom of a pit they look from further up. Measured against the referee, 20 bounces at albedo 1
+// where AO is below 0.1: WallHeight +8 % at 0.025, +3 % at 0.0125, −1 % at 0.005, bricks +4 % at 0.025 and
+// +0.5 % at 0.01; the second bounce of all bricks +0.4 and +0.2 %. Smaller ones see more of each other in
+// deep folds, which take longer to converge.
 constexpr double kNodeSize = 0.01;
 
 double longest_edge_texels(const Surface& surface, uint32_t facet) {
@@ -229,7 +228,8 @@ double node_area_share(int k, uint32_t node) {
   const double linear = (sides == 0 ? 6 : sides == 1 ? 3 : 1) / (3.0 * k * k);
   const bool middle = a % 2 + b % 2 + c % 2 == 2;
   const double quadratic = middle ? (sides == 0 ? 8 : 4) / (3.0 * k * k) : 0;
-  return (linear + quadratic) / 2;
+  const double quadratic_share = k == kCoarseSubdivision ? 1 : 0.25;
+  return (1 - quadratic_share) * linear + quadratic_share * quadratic;
 }
 
 double patch_area_texels(const Surface& surface, const PatchSet& patches, uint32_t patch) {
