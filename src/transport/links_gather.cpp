@@ -57,26 +57,27 @@ void gather_block(const BlockView& block, const float* HWY_RESTRICT values, doub
 
 #else
 
-using F = hn::CappedTag<float, kTurn>;
-constexpr F kF;
-constexpr hn::RebindToUnsigned<F> kU;
-constexpr hn::RebindToSigned<F> kI;
-constexpr hn::Half<F> kHalfF;
-constexpr hn::Half<hn::RebindToSigned<F> > kHalfI;
-constexpr hn::Repartition<double, F> kD;
-constexpr hn::Rebind<uint16_t, F> kCode;
-constexpr hn::Rebind<uint8_t, F> kByte;
-constexpr size_t kWidth = hn::MaxLanes(F());
+// Codes are decoded in vectors as wide as there are, sums are made in those of up to four numbers.
+constexpr hn::CappedTag<uint32_t, kTurn> kU;
+constexpr hn::RebindToSigned<decltype(kU)> kI;
+constexpr hn::Rebind<uint16_t, decltype(kU)> kCode;
+constexpr hn::Rebind<uint8_t, decltype(kU)> kByte;
+constexpr size_t kWidth = hn::MaxLanes(kU);
 constexpr size_t kParts = kTurn / kWidth;
-using U = hn::Vec<hn::RebindToUnsigned<F> >;
-using D = hn::Vec<hn::Repartition<double, F> >;
+using U = hn::Vec<decltype(kU)>;
+
+constexpr hn::CappedTag<double, 4> kD;
+constexpr hn::Rebind<float, decltype(kD)> kLight;
+constexpr hn::Rebind<int32_t, decltype(kD)> kMultiple;
+constexpr size_t kSumWidth = hn::MaxLanes(kD);
+constexpr size_t kSumParts = kTurn / kSumWidth;
 
 // Turns of a group of sixteen rows, decoded.
 struct Turns {
   static constexpr uint32_t kMost = 16;
 
   HWY_ALIGN uint32_t columns[kMost * kTurn];
-  HWY_ALIGN uint32_t multiples[kMost * kTurn];
+  HWY_ALIGN int32_t multiples[kMost * kTurn];
   HWY_ALIGN uint32_t totals[kTurn];  // of the multiples of each row, where `ends`
   uint32_t count;
   uint32_t first;  // place of the group
@@ -131,7 +132,7 @@ class Decoder {
   }
 
   // The next code of each row of a part; `lanes` of them are there.
-  HWY_INLINE void decode(size_t part, size_t lanes, uint32_t* columns, uint32_t* multiples) {
+  HWY_INLINE void decode(size_t part, size_t lanes, uint32_t* columns, int32_t* multiples) {
     const U code = hn::IfThenElseZero(hn::FirstN(kU, lanes),
                                       hn::PromoteTo(kU, hn::LoadU(kCode, codes_ + part * kWidth)));
     const U step = hn::ShiftRightSame(code, block_.weight_bits), weight = hn::And(code, most_weight_);
@@ -144,7 +145,7 @@ class Decoder {
     totals_[part] = hn::Add(totals_[part], multiple);
     // What has no weight reads the first value: it is at hand, and a row without codes has no column.
     hn::Store(hn::IfThenZeroElse(is_far, columns_[part]), kU, columns + part * kWidth);
-    hn::Store(multiple, kU, multiples + part * kWidth);
+    hn::Store(hn::BitCast(kI, multiple), kI, multiples + part * kWidth);
   }
 
   const BlockView& block_;
@@ -166,30 +167,29 @@ class Sums {
 
   HWY_INLINE void add(const Turns& turns) {
     for (uint32_t k = 0; k < turns.count; ++k)
-      for (size_t p = 0; p < kParts; ++p) {
-        const size_t at = k * kTurn + p * kWidth;
-        const auto columns = hn::BitCast(kI, hn::Load(kU, turns.columns + at));
-        const auto multiples = hn::BitCast(kI, hn::Load(kU, turns.multiples + at));
-        const auto light = hn::GatherIndex(kF, values_, columns);
-        low_[p] = hn::MulAdd(hn::PromoteTo(kD, hn::LowerHalf(kHalfI, multiples)),
-                             hn::PromoteTo(kD, hn::LowerHalf(kHalfF, light)), low_[p]);
-        high_[p] = hn::MulAdd(hn::PromoteTo(kD, hn::UpperHalf(kHalfI, multiples)),
-                              hn::PromoteTo(kD, hn::UpperHalf(kHalfF, light)), high_[p]);
+      for (size_t p = 0; p < kSumParts; ++p) {
+        const size_t at = k * kTurn + p * kSumWidth;
+        const auto multiples = hn::PromoteTo(kD, hn::Load(kMultiple, turns.multiples + at));
+        sums_[p] = hn::MulAdd(multiples, hn::PromoteTo(kD, light_of(turns.columns + at)), sums_[p]);
       }
     if (turns.ends) end_group(turns);
   }
 
  private:
+  // One by one: that is faster than to gather where a gather is many small steps.
+  HWY_INLINE hn::Vec<decltype(kLight)> light_of(const uint32_t* HWY_RESTRICT columns) const {
+    HWY_ALIGN float light[kSumWidth];
+    for (size_t i = 0; i < kSumWidth; ++i) light[i] = values_[columns[i]];
+    return hn::Load(kLight, light);
+  }
+
   void clear() {
-    for (size_t p = 0; p < kParts; ++p) low_[p] = high_[p] = hn::Zero(kD);
+    for (size_t p = 0; p < kSumParts; ++p) sums_[p] = hn::Zero(kD);
   }
 
   void end_group(const Turns& turns) {
     HWY_ALIGN double sums[kTurn];
-    for (size_t p = 0; p < kParts; ++p) {
-      hn::Store(low_[p], kD, sums + p * kWidth);
-      hn::Store(high_[p], kD, sums + p * kWidth + kWidth / 2);
-    }
+    for (size_t p = 0; p < kSumParts; ++p) hn::Store(sums_[p], kD, sums + p * kSumWidth);
     const uint32_t end = std::min(block_.rows, turns.first + kTurn);
     for (uint32_t place = turns.first; place < end; ++place)
       out_[block_.row[place]] =
@@ -200,7 +200,7 @@ class Sums {
   const BlockView& block_;
   const float* HWY_RESTRICT values_;
   double* HWY_RESTRICT out_;
-  D low_[kParts], high_[kParts];
+  hn::Vec<decltype(kD)> sums_[kSumParts];
 };
 
 void gather_block(const BlockView& block, const float* HWY_RESTRICT values, double* HWY_RESTRICT out) {
