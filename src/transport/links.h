@@ -4,7 +4,7 @@
 // that count alike, and links read back) they stay what they are. Others are rounded by the largest
 // remainder; no weight is off by a quantum or more, and links that round to nothing are not stored. How fine:
 // the error of a row's light is about sum · √(links / 12) / T times the spread of the light it sees, T being
-// the sum of its multiples; with T = 200 · sum · √links that is 1/700 of the spread in every row, and 10⁻⁵ to
+// the sum of its multiples; with T = 300 · sum · √links that is 1/1000 of the spread in every row, and 10⁻⁵ to
 // 10⁻⁴ of π in a bake's totals (measured, tests/bench/coding_bench.cpp). T is 12 to 64 for each link, but at
 // least 4096 in rows with a weight above ½.
 //

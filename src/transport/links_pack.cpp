@@ -12,7 +12,7 @@
 namespace hemibake {
 namespace {
 
-constexpr double kFinenessPerSum = 200, kLeastFineness = 12, kMostFineness = 64;
+constexpr double kFinenessPerSum = 300, kLeastFineness = 12, kMostFineness = 64;
 // Multiples of a row that gets over half of all its light by one link: light in a deep pit leaves it by
 // others, however small they are.
 constexpr double kDominatedFineness = 4096;
