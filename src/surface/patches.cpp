@@ -44,9 +44,15 @@ NodePlace node_place(int k, uint32_t node) {
   return {a, b};
 }
 
+uint32_t rows_of_tile(const PatchSet& patches, uint32_t first_row) {
+  return std::min(kTileRows, patches.cell_rows - first_row);
+}
+
 // The run that begins at cell `column` of a row. No division: every link of a bake asks for one.
 PatchRun run_at(const PatchSet& patches, uint32_t row, uint32_t column) {
-  const uint32_t run = row * patches.runs_in_row + column / kRunCells;
+  const uint32_t row_in_tile = row % kTileRows, first_row = row - row_in_tile;
+  const uint32_t run =
+      first_row * patches.runs_in_row + column / kRunCells * rows_of_tile(patches, first_row) + row_in_tile;
   PatchRun result;
   result.first = patches.first[run];
   result.first_cell = row * patches.columns + column;
@@ -68,18 +74,19 @@ PatchSet make_patches(const Surface& surface, Patches kind) {
   }
   patches.columns = facet_columns(surface);
   patches.runs_in_row = (patches.columns + kRunCells - 1) / kRunCells;
-  const uint32_t cells = facet_count(surface) / 2;
+  patches.cell_rows = patches.columns == 0 ? 0 : facet_count(surface) / 2 / patches.columns;
   uint64_t count = 0;
-  for (uint32_t row = 0; row < cells; row += patches.columns) {
+  for (uint32_t first_row = 0; first_row < patches.cell_rows; first_row += kTileRows)
     for (uint32_t column = 0; column < patches.columns; column += kRunCells) {
-      const uint32_t in_run = std::min(kRunCells, patches.columns - column);
-      patches.first.push_back(static_cast<uint32_t>(count));
-      count += 2 * node_count(subdivision_of_run(surface, row + column, in_run)) * in_run;
-      if (count > kMaxPatches)
-        throw InputError(
-            fmt::format("more than {} patches, expected a smaller map, or texels as patches", kMaxPatches));
+      const uint32_t cells = std::min(kRunCells, patches.columns - column);
+      for (uint32_t row = first_row; row < first_row + rows_of_tile(patches, first_row); ++row) {
+        patches.first.push_back(static_cast<uint32_t>(count));
+        count += 2 * node_count(subdivision_of_run(surface, row * patches.columns + column, cells)) * cells;
+        if (count > kMaxPatches)
+          throw InputError(
+              fmt::format("more than {} patches, expected a smaller map, or texels as patches", kMaxPatches));
+      }
     }
-  }
   patches.count = static_cast<uint32_t>(count);
   patches.first.push_back(patches.count);
   return patches;
@@ -91,7 +98,10 @@ glm::dvec2 node_uv(int k, uint32_t node) {
 }
 
 PatchRun patch_run(const PatchSet& patches, uint32_t run) {
-  return run_at(patches, run / patches.runs_in_row, run % patches.runs_in_row * kRunCells);
+  const uint32_t first_row = run / (kTileRows * patches.runs_in_row) * kTileRows;
+  const uint32_t in_row_of_tiles = run - first_row * patches.runs_in_row,
+                 rows = rows_of_tile(patches, first_row);
+  return run_at(patches, first_row + in_row_of_tiles % rows, in_row_of_tiles / rows * kRunCells);
 }
 
 PatchRun run_of_patch(const PatchSet& patches, uint32_t patch) {

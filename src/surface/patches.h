@@ -26,17 +26,21 @@ enum class Patches { kFacets, kTexels };
 inline constexpr int kCoarseSubdivision = 2, kFineSubdivision = 4;
 inline constexpr double kLongestCoarseEdge = 2;  // texels
 inline constexpr uint32_t kRunCells = 16;        // a run begins at multiples of this in a row of cells
+inline constexpr uint32_t kTileRows = 16;        // a tile begins at multiples of this row of cells
 
 // Nodes of a facet cut into k² triangles.
 constexpr uint32_t node_count(int k) { return static_cast<uint32_t>((k + 1) * (k + 2) / 2); }
 
 // Patches that are nodes are numbered run by run, in a run by half of the cell, then by node, then by cell:
-// the same node of neighbouring facets comes one after the other.
+// the same node of neighbouring facets comes one after the other. Runs are numbered tile by tile, a tile
+// being a run and those below it: what is near on the map is near in memory too, and links within a tile are
+// short.
 struct PatchSet {
   Patches kind = Patches::kFacets;
   uint32_t count = 0;
   // kFacets only:
   uint32_t columns = 0;         // cells in a row
+  uint32_t cell_rows = 0;       // rows of cells
   uint32_t runs_in_row = 0;     // ⌈columns / kRunCells⌉
   std::vector<uint32_t> first;  // first patch of every run, and `count` at the end
 };

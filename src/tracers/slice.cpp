@@ -26,8 +26,9 @@ constexpr uint64_t kTexelTurn = 0x511ce01, kNodeTurn = 0x511ce03, kTexelPlace = 
 // a texel gathers averages over many of them.
 constexpr int kTexelStrata = kStrataPerSlice, kNodeStrata = kStrataPerSlice / 2;
 
-// Packets walked together: with links, what they meet stays in the cache.
-constexpr size_t kPacketsTogether = 64, kTexelPacketsWithLinks = 16;
+// Packets walked together: with links, what they meet stays in the cache; without, more packets follow the
+// same path.
+constexpr size_t kNodePacketsTogether = 64, kTexelPacketsTogether = 512, kTexelPacketsWithLinks = 16;
 
 // Less than this share of the hemisphere blocked counts as none: as little as a horizon may be off by.
 constexpr double kLeastBlocked = 1e-4;
@@ -71,7 +72,7 @@ class SliceTracer final : public Tracer {
   std::unique_ptr<Tracer> reseeded(uint64_t seed) const override {
     auto again = std::make_unique<SliceTracer>(*this);
     again->options_.seed = seed;
-    again->families_ = make_slice_families(field_, options_.azimuths, options_.patches, seed);
+    again->families_ = make_slice_families(options_.azimuths, options_.patches, seed);
     return again;
   }
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
@@ -106,7 +107,7 @@ SliceTracer::SliceTracer(const Surface& surface, const SliceOptions& options)
       patches_(make_patches(surface, options.patches)),
       max_distance_texels_(options.max_distance_m / surface.texel_size_m),
       field_(make_slice_field(surface)),
-      families_(make_slice_families(field_, options.azimuths, options.patches, options.seed)) {}
+      families_(make_slice_families(options.azimuths, options.patches, options.seed)) {}
 
 int SliceTracer::turn_of(const SlicePaths& paths, uint64_t stream, uint64_t place) const {
   return static_cast<int>(unit_interval(mix_bits(options_.seed, stream, place)) * paths.turns);
@@ -270,7 +271,9 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
 void SliceTracer::answer(const SlicePaths& paths, bool of_nodes, bool with_links,
                          std::span<const AskedPacket> asked, uint32_t first, RowPlaces places,
                          std::span<Row> rows, TracerCounts& counts) const {
-  const size_t together = with_links && !of_nodes ? kTexelPacketsWithLinks : kPacketsTogether;
+  const size_t together = of_nodes     ? kNodePacketsTogether
+                          : with_links ? kTexelPacketsWithLinks
+                                       : kTexelPacketsTogether;
   for (size_t begin = 0; begin < asked.size(); begin += together) {
     const auto piece = asked.subspan(begin, std::min(together, asked.size() - begin));
     std::vector<SlicePacket> packets;

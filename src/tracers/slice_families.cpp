@@ -16,7 +16,7 @@ constexpr uint64_t kTurn = 0x511ce08, kNodeShift = 0x511ce02;
 // together see the whole circle; with more rotations fewer packets share a path. The families of nodes are
 // rotated apart.
 constexpr int kTexelPaths = 512, kNodePaths = 32;
-// Segments kept ready in a family, about 650 bytes each. There is one family of texels and 42 of nodes.
+// Segments kept ready in a family, about 530 bytes each. There is one family of texels and 42 of nodes.
 constexpr int kReadyTexelSegments = 16384, kReadyNodeSegments = 1024;
 
 // A node looks for links along every third of its azimuths. What it sees of the sky is the light of its
@@ -49,21 +49,21 @@ SlicePaths make_paths(int azimuths, int wanted_paths, double offset, const Add& 
   return family;
 }
 
-void make_ready(const SliceField& field, int segments, SlicePaths& family) {
-  prepare_segments(field, std::max(1, segments / static_cast<int>(family.paths.size())), family);
+void keep_ready(int segments, SlicePaths& family) {
+  family.ready = std::make_shared<ReadySegments>();
+  family.ready->per_path = std::max(1, segments / static_cast<int>(family.paths.size()));
 }
 
-SlicePaths make_texel_paths(const SliceField& field, int azimuths, uint64_t seed) {
+SlicePaths make_texel_paths(int azimuths, uint64_t seed) {
   SlicePaths family = make_paths(azimuths, kTexelPaths, turn_offset(seed, 0), [](int, int, double angle) {
     return make_slice_path({0, 0}, angle, false);
   });
-  make_ready(field, kReadyTexelSegments, family);
+  keep_ready(kReadyTexelSegments, family);
   return family;
 }
 
 // Each azimuth starts from another low-discrepancy point of the small copy of the facet at the node.
-SlicePaths make_node_paths(const SliceField& field, int azimuths, uint64_t seed, int k, uint32_t half,
-                           uint32_t node) {
+SlicePaths make_node_paths(int azimuths, uint64_t seed, int k, uint32_t half, uint32_t node) {
   const auto make_path = [&](int turn, int azimuth, double angle) {
     const uint64_t place = 2 * static_cast<uint64_t>(turn);
     const double shift_u = unit_interval(mix_bits(seed, kNodeShift, place));
@@ -77,20 +77,20 @@ SlicePaths make_node_paths(const SliceField& field, int azimuths, uint64_t seed,
   SlicePaths family = make_paths(kNodeAzimuthsPerLinked * linked_azimuths_of_node(azimuths), kNodePaths,
                                  turn_offset(seed, 1 + node_family(k, half, node)), make_path);
   family.azimuths_per_linked = kNodeAzimuthsPerLinked;
-  make_ready(field, kReadyNodeSegments, family);
+  keep_ready(kReadyNodeSegments, family);
   return family;
 }
 
 }  // namespace
 
-SliceFamilies make_slice_families(const SliceField& field, int azimuths, Patches patches, uint64_t seed) {
+SliceFamilies make_slice_families(int azimuths, Patches patches, uint64_t seed) {
   SliceFamilies families;
-  families.texels = make_texel_paths(field, azimuths, seed);
+  families.texels = make_texel_paths(azimuths, seed);
   if (patches != Patches::kFacets) return families;
   for (const int k : {kCoarseSubdivision, kFineSubdivision})
     for (uint32_t half = 0; half < 2; ++half)
       for (uint32_t node = 0; node < node_count(k); ++node)
-        families.nodes.push_back(make_node_paths(field, azimuths, seed, k, half, node));
+        families.nodes.push_back(make_node_paths(azimuths, seed, k, half, node));
   return families;
 }
 

@@ -15,7 +15,7 @@ struct SliceFamilies {
 };
 
 // azimuths: of a texel. seed: which rotations, and where in their small copies of the facet nodes start.
-SliceFamilies make_slice_families(const SliceField& field, int azimuths, Patches patches, uint64_t seed);
+SliceFamilies make_slice_families(int azimuths, Patches patches, uint64_t seed);
 
 // By subdivision, half of the cell and node.
 size_t node_family(int k, uint32_t half, uint32_t node);

@@ -104,6 +104,8 @@ SliceField make_slice_field(const Surface& surface) {
   SliceField field;
   field.width = surface.width();
   field.height = surface.height();
+  field.inverse_width = 1.0 / field.width;
+  field.inverse_height = 1.0 / field.height;
   field.wrap = surface.edge == Edge::kWrap;
   field.heights = margined_heights(surface, field.wrap);
   field.top = *std::max_element(field.heights.values.begin(), field.heights.values.end());

@@ -37,6 +37,7 @@ struct HeightPlane {
 
 struct SliceField {
   int width = 0, height = 0;
+  double inverse_width = 0, inverse_height = 0;
   bool wrap = true;
   float top = 0;  // height of the highest texel, in texels, as all heights here
 

@@ -2,8 +2,11 @@
 // the same place of its cell in the same direction.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/vec2.hpp>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "tracers/slice_field.h"
@@ -19,15 +22,9 @@ struct Crossing {
 
 // The facet a path lies in before a crossing: its cell relative to the first corner of the segment's window.
 struct FacetBefore {
-  int16_t column, row;
-  int16_t half;  // 0: the facet with the cell's corner (i, j), 1: the other (surface/facets.h)
-  float along;   // of the crossing, from where the segment begins, texels
-};
-
-// First corners of the windows that begin with a segment, by level, relative to the start's cell; wrapped
-// into the map where it wraps. Levels whose windows do not begin with this segment are not used.
-struct SegmentWindows {
-  glm::ivec2 corner[kSkipLevels];
+  int8_t column, row;
+  bool half;    // false: the facet with the cell's corner (i, j), true: the other (surface/facets.h)
+  float along;  // of the crossing, from where the segment begins, texels
 };
 
 struct SlicePath {
@@ -39,36 +36,54 @@ struct SlicePath {
 
 SlicePath make_slice_path(const glm::dvec2& origin, double azimuth, bool starts_in_facet);
 
-SegmentWindows segment_windows(const SliceField& field, const SlicePath& path, int segment);
+// First corner of the square window over `segments` segments from `segment` on, relative to the start's cell;
+// wrapped into the map where it wraps.
+glm::ivec2 window_corner(const SliceField& field, const SlicePath& path, int segment, int segments);
 
-// Where a segment begins, from the first corner of its window, texels.
+// Where a segment begins, from the first corner of its own window, texels.
 glm::dvec2 segment_begin(const SlicePath& path, int segment);
 
-// Appends the crossings of one segment by distance, both its ends included, and the facets before them. The
-// first one is where the path enters the facet before the second: the crossing before the segment, the start
-// on a texel, or, for a start inside a facet, where the path leaves this facet. What a receiver sees begins
-// behind it.
-void append_crossings(const SliceField& field, const SlicePath& path, int segment,
-                      std::vector<Crossing>& crossings, std::vector<FacetBefore>& facets);
+// Crossings of a segment, at most: of each family of lines as many as it spans, one more for its overlaps,
+// and the one before it.
+inline constexpr size_t kMostCrossings = 4 * kSegmentCells + 4;
 
-// The paths of one family of receivers (texels, or one half of the cells), with their nearest segments ready.
-struct SlicePaths {
-  int azimuths = 0;
-  int azimuths_per_linked = 1;          // links are looked for along every n-th azimuth
-  int turns = 0;                        // rotations of the azimuths
-  int ready_segments = 0;               // per path
-  std::vector<SlicePath> paths;         // [turn · azimuths + azimuth]
-  std::vector<SegmentWindows> windows;  // [path · ready_segments + segment]
-  std::vector<uint32_t> first;          // the same, and the end: into crossings and facets
+struct SegmentCrossings {
+  uint32_t count;
+  std::array<Crossing, kMostCrossings> crossings;
+  std::array<FacetBefore, kMostCrossings> facets;
+};
+
+// The crossings of one segment by distance, both its ends included, and the facets before them. The first one
+// is where the path enters the facet before the second: the crossing before the segment, the start on a
+// texel, or, for a start inside a facet, where the path leaves this facet. What a receiver sees begins behind
+// it.
+void find_crossings(const SliceField& field, const SlicePath& path, int segment, SegmentCrossings& found);
+
+// The nearest segments of all paths of a family.
+struct ReadySegments {
+  int per_path = 0;
+  std::once_flag made;
+  std::vector<glm::ivec2>
+      corners;  // [(path · per_path + segment) · kSkipLevels + level], where a window begins
+  std::vector<uint32_t> first;  // [path · per_path + segment], and the end: into crossings and facets
   std::vector<Crossing> crossings;
   std::vector<FacetBefore> facets;
+};
+
+// The paths of one family of receivers (texels, or one half of the cells).
+struct SlicePaths {
+  int azimuths = 0;
+  int azimuths_per_linked = 1;   // links are looked for along every n-th azimuth
+  int turns = 0;                 // rotations of the azimuths
+  std::vector<SlicePath> paths;  // [turn · azimuths + azimuth]
+  std::shared_ptr<ReadySegments> ready;
 
   size_t path_index(int turn, int azimuth) const {
     return static_cast<size_t>(turn) * static_cast<size_t>(azimuths) + static_cast<size_t>(azimuth);
   }
 };
 
-// Fills in everything but `paths`, which are there, azimuths · turns of them.
-void prepare_segments(const SliceField& field, int ready_segments, SlicePaths& paths);
+// Found when they are asked for first: families that a map has no receivers of need none.
+const ReadySegments& ready_segments(const SliceField& field, const SlicePaths& paths);
 
 }  // namespace hemibake

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <span>
-#include <vector>
 
 #include "tracers/slice_path.h"
 
@@ -17,54 +16,51 @@ struct SegmentView {
 // For one thread. What it returns is good until the next call.
 class SegmentSource {
  public:
-  SegmentSource(const SliceField& field, const SlicePaths& paths) : field_(field), paths_(paths) {}
+  SegmentSource(const SliceField& field, const SlicePaths& paths)
+      : field_(field), paths_(paths), ready_(ready_segments(field, paths)) {}
 
   void begin_path(size_t index) {
     path_ = &paths_.paths[index];
-    ready_ = index * static_cast<size_t>(paths_.ready_segments);
-    for (FarSegment& far : far_segments_) far.segment = -1;
+    path_index_ = index;
+    first_ready_ = index * static_cast<size_t>(ready_.per_path);
   }
   const SlicePath& path() const { return *path_; }
 
-  const SegmentWindows& windows(int segment) {
-    return segment < paths_.ready_segments ? paths_.windows[ready_ + static_cast<size_t>(segment)]
-                                           : far_segment(segment).windows;
+  // window_corner of the window of a level that begins with `segment`.
+  glm::ivec2 corner(int segment, int level) const {
+    if (segment >= ready_.per_path) return window_corner(field_, *path_, segment, kSkipSegments[level]);
+    return ready_.corners[ready_index(segment) * kSkipLevels + static_cast<size_t>(level)];
   }
 
   SegmentView crossings(int segment) {
-    if (segment < paths_.ready_segments) {
-      const size_t index = ready_ + static_cast<size_t>(segment);
-      const uint32_t first = paths_.first[index], count = paths_.first[index + 1] - first;
-      return {{paths_.crossings.data() + first, count}, paths_.facets.data() + first};
+    if (segment < ready_.per_path) {
+      const size_t index = ready_index(segment);
+      const uint32_t first = ready_.first[index], count = ready_.first[index + 1] - first;
+      return {{ready_.crossings.data() + first, count}, ready_.facets.data() + first};
     }
-    FarSegment& far = far_segment(segment);
-    if (far.crossings.empty()) append_crossings(field_, *path_, segment, far.crossings, far.facets);
-    return {far.crossings, far.facets.data()};
+    FarSegment& far = far_segments_[static_cast<size_t>(segment) % far_segments_.size()];
+    if (far.path != path_index_ || far.segment != segment) {
+      far.path = path_index_;
+      far.segment = segment;
+      find_crossings(field_, *path_, segment, far.found);
+    }
+    return {{far.found.crossings.data(), far.found.count}, far.found.facets.data()};
   }
 
  private:
   struct FarSegment {
+    size_t path = 0;
     int segment = -1;
-    SegmentWindows windows;
-    std::vector<Crossing> crossings;  // empty until asked for
-    std::vector<FacetBefore> facets;
+    SegmentCrossings found;
   };
 
-  FarSegment& far_segment(int segment) {
-    FarSegment& far = far_segments_[static_cast<size_t>(segment) % far_segments_.size()];
-    if (far.segment != segment) {
-      far.segment = segment;
-      far.windows = segment_windows(field_, *path_, segment);
-      far.crossings.clear();
-      far.facets.clear();
-    }
-    return far;
-  }
+  size_t ready_index(int segment) const { return first_ready_ + static_cast<size_t>(segment); }
 
   const SliceField& field_;
   const SlicePaths& paths_;
+  const ReadySegments& ready_;
   const SlicePath* path_ = nullptr;
-  size_t ready_ = 0;
+  size_t path_index_ = 0, first_ready_ = 0;
   std::array<FarSegment, 128> far_segments_;  // packets near each other ask for the same ones
 };
 

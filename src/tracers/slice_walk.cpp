@@ -69,7 +69,7 @@ class PathWalk {
     Lanes lanes = start(packet);
     add_sky(lanes.rim, path.direction, view.hemisphere);
     for (int segment = 0;;) {
-      if (!reaches_map(place(packet, segments_.windows(segment).corner[0])) || segment > last_segment_) break;
+      if (!reaches_map(packet, segment) || segment > last_segment_) break;
       if (segment > 0) {
         if (ended(lanes, segment)) {
           count_cut_short(lanes, segment, view);
@@ -114,9 +114,11 @@ class PathWalk {
     if (field_.wrap && y >= field_.height) y -= field_.height;
     return {x, y};
   }
-  bool reaches_map(const glm::ivec2& corner) const {
-    return field_.wrap || (corner.x < field_.width && corner.y < field_.height &&
-                           corner.x + kSliceLanes + kSegmentCells >= 0 && corner.y + kSegmentCells + 1 >= 0);
+  bool reaches_map(const SlicePacket& packet, int segment) const {
+    if (field_.wrap) return true;
+    const glm::ivec2 corner = place(packet, segments_.corner(segment, 0));
+    return corner.x < field_.width && corner.y < field_.height &&
+           corner.x + kSliceLanes + kSegmentCells >= 0 && corner.y + kSegmentCells + 1 >= 0;
   }
 
   const SliceField& field_;
@@ -174,12 +176,11 @@ HWY_INLINE void PathWalk::count_cut_short(const Lanes& lanes, int segment, Packe
 
 // How many segments from `segment` on stay below every lane's horizon, as far as one window tells.
 HWY_INLINE int PathWalk::segments_to_skip(const SlicePacket& packet, const Lanes& lanes, int segment) {
-  const SegmentWindows& window = segments_.windows(segment);
   const V near = hn::Set(kF, inverse_distance(segment));
   for (int level = kSkipLevels - 1; level >= 0; --level) {
     const int segments = kSkipSegments[level];
     if (segment % segments != 0 || (level == 1 && segment < kFarSegments)) continue;
-    const glm::ivec2 corner = place(packet, window.corner[level]);
+    const glm::ivec2 corner = place(packet, segments_.corner(segment, level));
     const HeightPlane& plane = field_.tallest[static_cast<size_t>(level)];
     const float* tallest = plane.at(corner.x, corner.y);
     const V far = hn::Set(kF, inverse_distance(segment + segments));
@@ -208,7 +209,7 @@ HWY_INLINE V height_at(const Crossing& crossing, const float* heights, size_t pa
 template <class Meet>
 HWY_INLINE void PathWalk::cross_segment(const SlicePacket& packet, int segment, const Lanes& lanes,
                                         const Meet& meet) {
-  const glm::ivec2 corner = place(packet, segments_.windows(segment).corner[0]);
+  const glm::ivec2 corner = place(packet, segments_.corner(segment, 0));
   const float* heights = field_.heights.at(corner.x, corner.y);
   const SegmentView crossed = segments_.crossings(segment);
   for (size_t i = 1; i < crossed.crossings.size(); ++i) {
@@ -274,7 +275,7 @@ HWY_INLINE void PathWalk::find_hits(const SlicePacket& packet, uint32_t azimuth,
   next_stratum_ = {};
   for (size_t p = 0; p < kParts; ++p) lanes.slope.part[p] = hn::LoadU(kF, strata_.slope[0] + p * kWidth);
   for (int segment = 0;;) {
-    if (!reaches_map(place(packet, segments_.windows(segment).corner[0])) || segment > last_segment_) return;
+    if (!reaches_map(packet, segment) || segment > last_segment_) return;
     if (segment > 0) {
       if (nothing_left(lanes, segment)) return;
       const int skipped = segments_to_skip(packet, lanes, segment);
@@ -304,7 +305,7 @@ HWY_INLINE void PathWalk::hit_strata(const SlicePacket& packet, int segment, Lan
   const SlicePath& path = segments_.path();
   const V near = broadcast(segment * path.step), zero = hn::Zero(kF), one = hn::Set(kF, 1.0f);
   const glm::vec2 begin(segment_begin(path, segment)), direction(path.direction);
-  const glm::ivec2 window = place(packet, segments_.windows(segment).corner[0]);
+  const glm::ivec2 window = place(packet, segments_.corner(segment, 0));
   const float* heights = field_.heights.at(window.x, window.y);
   cross_segment(
       packet, segment, lanes,
@@ -332,7 +333,7 @@ HWY_INLINE void PathWalk::hit_strata(const SlicePacket& packet, int segment, Lan
             const size_t lane = p * kWidth + l;
             const size_t stratum = next_stratum_[lane]++;
             const glm::vec2 in_cell = begin + alongs[l] * direction - glm::vec2(facet.column, facet.row);
-            const glm::vec2 uv = facet.half == 0 ? in_cell : 1.0f - in_cell;
+            const glm::vec2 uv = !facet.half ? in_cell : 1.0f - in_cell;
             view.hits[lane].push_back({facet_at(corner, facet, static_cast<int>(lane)),
                                        strata_.weight[stratum][lane], uv.x, uv.y, distances[l]});
             slopes[l] = strata_.slope[stratum + 1][lane];
@@ -356,7 +357,7 @@ HWY_INLINE uint32_t PathWalk::facet_at(glm::ivec2 corner, const FacetBefore& fac
   }
   const uint32_t cell =
       static_cast<uint32_t>(row) * static_cast<uint32_t>(columns) + static_cast<uint32_t>(column);
-  return 2 * cell + static_cast<uint32_t>(facet.half);
+  return 2 * cell + (facet.half ? 1 : 0);
 }
 
 template <WalkFor kWhat>

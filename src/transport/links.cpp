@@ -19,24 +19,24 @@ const std::byte* packed_bytes(const LinkBlock& block) {
   return block.spilled ? block.spilled : block.packed.data();
 }
 
-// Calls visit(row in the block, place, column, multiple of the row's quantum) for every link as packed, the
-// links of a row in their order.
+// Calls visit(row in the block, column, part of the multiple of the row's quantum) for every code that
+// has a weight, those of a row in their order.
 template <class Visit>
 void visit_packed(const BlockView& view, const Visit& visit) {
-  const uint32_t weight_mask = (1u << view.weight_bits) - 1;
-  const uint8_t* link = view.links;
+  const uint32_t most_weight = (1u << view.weight_bits) - 1;
+  const uint32_t most_step = (1u << (LinkBlock::kCodeBits - view.weight_bits)) - 1;
+  const uint16_t* code = view.codes;
   for (uint32_t first = 0; first < view.rows; first += LinkBlock::kRowsInTurn) {
     uint32_t column[LinkBlock::kRowsInTurn];
     for (uint32_t i = 0; i < LinkBlock::kRowsInTurn && first + i < view.rows; ++i)
-      column[i] = view.base + (uint32_t{view.start[first + i]} << view.start_shift);
+      column[i] = view.before_start(first + i);
     for (uint32_t k = 0; view.rows_as_long[k] > first; ++k) {
       const uint32_t turn = std::min(LinkBlock::kRowsInTurn, view.rows_as_long[k] - first);
-      for (uint32_t i = 0; i < turn; ++i) {
-        const uint32_t code = link[2 * i] | link[2 * i + 1] << 8 | link[2 * turn + i] << 16;
-        column[i] += code >> view.weight_bits;
-        visit(view.row[first + i], first + i, column[i], code & weight_mask);
+      for (uint32_t i = 0; i < turn; ++i, ++code) {
+        const uint32_t step = *code >> view.weight_bits, weight = *code & most_weight;
+        column[i] += weight == 0 ? step * most_step : step;
+        if (weight > 0) visit(view.row[first + i], column[i], step == 0 ? weight * most_weight : weight);
       }
-      link += turn * LinkBlock::kLinkBytes;
     }
   }
 }
@@ -94,22 +94,18 @@ void finish_blocks(Links& links) {
 }
 
 BlockView view_block(const LinkBlock& block) {
-  const bool indexed = block.quanta < block.rows;
-  const std::byte* bytes = packed_bytes(block);
   BlockView view{};
   view.rows = block.rows;
   view.base = block.base;
   view.start_shift = block.start_shift;
   view.weight_bits = block.weight_bits;
-  view.quanta = reinterpret_cast<const float*>(bytes);
-  view.rows_as_long = reinterpret_cast<const uint16_t*>(view.quanta + block.quanta);
-  view.row = reinterpret_cast<const uint8_t*>(view.rows_as_long + block.longest + 1);
+  view.sum_unit = std::ldexp(1, block.sum_exponent);
+  view.rows_as_long = reinterpret_cast<const uint16_t*>(packed_bytes(block));
+  view.codes = view.rows_as_long + block.longest + 1;
+  view.sum_low = view.codes + block.codes;
+  view.sum_high = reinterpret_cast<const uint8_t*>(view.sum_low + block.rows);
+  view.row = view.sum_high + block.rows;
   view.start = view.row + block.rows;
-  view.links = view.start + block.rows;
-  if (indexed) {
-    view.quantum_index = view.links;
-    view.links += block.rows;
-  }
   return view;
 }
 
@@ -122,20 +118,21 @@ void unpack_block(const LinkBlock& block, BlockRows& rows) {
   const BlockView view = view_block(block);
   // A row's columns ascend; a multiple may be in several parts.
   std::vector<uint32_t> last(view.rows, kNone);
+  std::vector<double> quanta(view.rows);
   rows.row_begin.assign(view.rows + 1, 0);
-  visit_packed(view, [&](uint32_t row, uint32_t, uint32_t column, uint32_t multiple) {
-    if (multiple == 0 || last[row] == column) return;
+  visit_packed(view, [&](uint32_t row, uint32_t column, uint32_t multiple) {
+    quanta[row] += multiple;
+    if (last[row] == column) return;
     last[row] = column;
     ++rows.row_begin[row + 1];
   });
   for (uint32_t r = 0; r < view.rows; ++r) rows.row_begin[r + 1] += rows.row_begin[r];
+  for (uint32_t place = 0; place < view.rows_as_long[0]; ++place)
+    quanta[view.row[place]] = view.sum(place) / quanta[view.row[place]];
   rows.patches.assign(rows.row_begin.back(), 0);
   std::vector<double> multiples(rows.patches.size());
   std::vector<uint32_t> end(rows.row_begin.begin(), rows.row_begin.end() - 1);
-  std::vector<double> quanta(view.rows);
-  visit_packed(view, [&](uint32_t row, uint32_t place, uint32_t column, uint32_t multiple) {
-    quanta[row] = view.quantum(place);
-    if (multiple == 0) return;
+  visit_packed(view, [&](uint32_t row, uint32_t column, uint32_t multiple) {
     if (end[row] == rows.row_begin[row] || rows.patches[end[row] - 1] != column)
       rows.patches[end[row]++] = column;
     multiples[end[row] - 1] += multiple;
@@ -151,13 +148,10 @@ std::vector<double> row_sums(const Links& links) {
   std::vector<double> sums(links.rows);
   parallel_for(links.blocks.size(), 1, [&](size_t first, size_t last) {
     for (size_t b = first; b < last; ++b) {
-      const LinkBlock& block = links.blocks[b];
-      const BlockView view = view_block(block);
-      double* const of_block = sums.data() + b * Links::kRowsPerBlock;
-      visit_packed(view,
-                   [&](uint32_t row, uint32_t, uint32_t, uint32_t multiple) { of_block[row] += multiple; });
-      for (uint32_t place = 0; place < view.rows; ++place) of_block[view.row[place]] *= view.quantum(place);
-      close_view(block);
+      const BlockView view = view_block(links.blocks[b]);
+      for (uint32_t place = 0; place < view.rows_as_long[0]; ++place)
+        sums[b * Links::kRowsPerBlock + view.row[place]] = view.sum(place);
+      close_view(links.blocks[b]);
     }
   });
   return sums;

@@ -2,17 +2,22 @@
 //
 // Weights are whole multiples of their row's quantum. Where they are multiples of a common unit already (rays
 // that count alike, and links read back) they stay what they are. Others are rounded by the largest
-// remainder, so that the multiples times the quantum add up to the sum of the weights given; no weight is off
-// by a quantum or more, and links that round to nothing are not stored. How fine: the error of a row's light
-// is about sum · √(links / 12) / T times the spread of the light it sees, T being the sum of its multiples;
-// with T = 200 · sum · √links that is 1/700 of the spread in every row, and 10⁻⁵ to 10⁻⁴ of π in a bake's
-// totals (measured, tests/bench/coding_bench.cpp). T is 12 to 64 for each link, but at
+// remainder; no weight is off by a quantum or more, and links that round to nothing are not stored. How fine:
+// the error of a row's light is about sum · √(links / 12) / T times the spread of the light it sees, T being
+// the sum of its multiples; with T = 200 · sum · √links that is 1/700 of the spread in every row, and 10⁻⁵ to
+// 10⁻⁴ of π in a bake's totals (measured, tests/bench/coding_bench.cpp). T is 12 to 64 for each link, but at
 // least 4096 in rows with a weight above ½.
 //
-// A link is 24 bits: the lowest `weight_bits` of its block hold the multiple, the others the step from the
-// row's column before. A multiple that is too large goes on in links without a step, a step that is too large
-// in links without weight. Rows lie side by side: a block's rows are sorted by falling length, sixteen of
-// them take turns, link by link, so that one vector decodes a link of each and no sum runs across a vector.
+// What is kept of the weights' size is the sum of every row, in 24 bits: the quantum is that sum over T, so
+// that no energy comes or goes whatever the multiples are. Rows whose sum is less than half of its last bit
+// store nothing.
+//
+// A link is a code of 16 bits: the lowest `weight_bits` of its block hold the multiple, the others the step
+// from the row's column before, or from the column before its start: at least 1. A larger step takes a code
+// with weight 0 before it, whose step counts as many times as the largest step; a larger multiple takes a
+// code with step 0 after it, whose weight counts as many times as the largest weight. Rows lie side by side:
+// a block's rows are sorted by falling length, sixteen of them take turns, code by code, so that one vector
+// decodes a code of each and no sum runs across a vector.
 #pragma once
 
 #include <cstddef>
@@ -35,16 +40,16 @@ struct OpenRows {
 
 struct LinkBlock {
   static constexpr uint32_t kRowsInTurn = 16;
-  static constexpr uint32_t kLinkBytes = 3;
-  static constexpr uint32_t kLinkBits = 8 * kLinkBytes;
-  // Zeros after the last link: vectors are read whole.
-  static constexpr uint32_t kPadding = kRowsInTurn * kLinkBytes;
+  static constexpr int kCodeBits = 16;
+  // Zeros after all else: vectors are read whole.
+  static constexpr uint32_t kPadding = kRowsInTurn * sizeof(uint16_t);
 
   uint32_t rows = 0;
-  uint32_t links = 0;    // columns with a weight, over all rows
-  uint32_t longest = 0;  // row, in links as packed
-  uint32_t quanta = 0;   // different ones, if fewer than rows, or one for each row
-  uint32_t base = 0;     // column; rows start from multiples of 2^start_shift after it
+  uint32_t links = 0;        // columns with a weight, over all rows
+  uint32_t codes = 0;        // they take
+  uint32_t longest = 0;      // row, in codes
+  uint32_t base = 0;         // column; rows start at multiples of 2^start_shift after it
+  int16_t sum_exponent = 0;  // sums of rows are multiples of 2^sum_exponent
   uint8_t start_shift = 0, weight_bits = 0;
   std::vector<std::byte> packed;       // what BlockView shows; empty once it is spilled
   const std::byte* spilled = nullptr;  // the same
@@ -82,19 +87,22 @@ void finish_blocks(Links& links);  // all of them
 // A finished block wherever it lies. Place: of a row in the order of the block, by falling length.
 struct BlockView {
   uint32_t rows;
-  uint32_t base, start_shift, weight_bits;
-  const float* quanta;           // of every place, or
-  const uint8_t* quantum_index;  // not null: of every place, the index in `quanta`
-  const uint16_t* rows_as_long;  // [k]: rows with more than k links as packed; 0 at the end
-  const uint8_t* row;            // of every place
-  const uint8_t* start;          // of every place: column (start << start_shift) + base
-  // Sixteen places after sixteen places, in each the first link of all, the second of all that have one, …:
-  // of those links the low 16 bits, then the high 8 bits. Little-endian.
-  const uint8_t* links;
+  uint32_t base;
+  int start_shift, weight_bits;
+  double sum_unit;
+  const uint16_t* rows_as_long;  // [k]: rows with more than k codes; 0 at the end
+  // Sixteen places after sixteen places, in each the first code of all, the second of all that have one, ….
+  // Little-endian.
+  const uint16_t* codes;
+  const uint16_t* sum_low;  // of every place: sum in units of `sum_unit`, less 1
+  const uint8_t* sum_high;
+  const uint8_t* row;    // of every place
+  const uint8_t* start;  // of every place: column (start << start_shift) + base
 
-  double quantum(uint32_t place) const {
-    return static_cast<double>(quanta[quantum_index ? quantum_index[place] : place]);
-  }
+  // Of a row that has links.
+  double sum(uint32_t place) const { return ((sum_high[place] << 16 | sum_low[place]) + 1) * sum_unit; }
+  // The column before the first one a row may lead to; wraps around below 0.
+  uint32_t before_start(uint32_t place) const { return base + (uint32_t{start[place]} << start_shift) - 1; }
 };
 BlockView view_block(const LinkBlock& block);
 // The view is not needed any more: memory of a spilled block is given back.
@@ -112,7 +120,7 @@ void unpack_block(const LinkBlock& block, BlockRows& rows);
 // every machine and at any thread count. values: one per column; out: one per row.
 void gather(const Links& links, std::span<const double> values, std::span<double> out);
 
-// Σ_j w_ij of every row, double: exact but for the quantum's own rounding to float.
+// Σ_j w_ij of every row: to half of 2⁻²⁴ of the least power of two that no sum of its block exceeds.
 std::vector<double> row_sums(const Links& links);
 
 }  // namespace hemibake

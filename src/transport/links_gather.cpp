@@ -1,5 +1,8 @@
-// The product of packed links and values: a vector takes a link of each of sixteen rows at once, so that
-// decoding and sums need no exchange between lanes.
+// The product of packed links and values: a vector takes a code of each of sixteen rows at once, so that
+// decoding and sums need no exchange between lanes. Codes are decoded some turns before their values are
+// asked for, and the values are fetched meanwhile: on smooth maps almost every link leads to a line of memory
+// of its own.
+#include <hwy/cache_control.h>
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -26,26 +29,29 @@ constexpr uint32_t kTurn = LinkBlock::kRowsInTurn;
 
 #if HWY_TARGET == HWY_SCALAR
 
-// A machine without vectors: the same, a link at a time.
+// A machine without vectors: the same, a code at a time.
 void gather_block(const BlockView& block, const float* HWY_RESTRICT values, double* HWY_RESTRICT out) {
-  const uint8_t* HWY_RESTRICT link = block.links;
-  const uint32_t weight_mask = (1u << block.weight_bits) - 1;
+  const uint16_t* HWY_RESTRICT code = block.codes;
+  const uint32_t most_weight = (1u << block.weight_bits) - 1;
+  const uint32_t most_step = (1u << (LinkBlock::kCodeBits - block.weight_bits)) - 1;
   for (uint32_t first = 0; first < block.rows; first += kTurn) {
-    uint32_t column[kTurn] = {};
+    uint32_t column[kTurn] = {}, total[kTurn] = {};
     double sum[kTurn] = {};
     const uint32_t places = std::min(kTurn, block.rows - first);
-    for (uint32_t i = 0; i < places; ++i)
-      column[i] = block.base + (uint32_t{block.start[first + i]} << block.start_shift);
+    for (uint32_t i = 0; i < places; ++i) column[i] = block.before_start(first + i);
     for (uint32_t k = 0; block.rows_as_long[k] > first; ++k) {
       const uint32_t turn = std::min(kTurn, block.rows_as_long[k] - first);
-      for (uint32_t i = 0; i < turn; ++i) {
-        const uint32_t code = link[2 * i] | link[2 * i + 1] << 8 | link[2 * turn + i] << 16;
-        column[i] += code >> block.weight_bits;
-        sum[i] += static_cast<double>(code & weight_mask) * static_cast<double>(values[column[i]]);
+      for (uint32_t i = 0; i < turn; ++i, ++code) {
+        const uint32_t step = *code >> block.weight_bits, part = *code & most_weight;
+        column[i] += part == 0 ? step * most_step : step;
+        if (part == 0) continue;
+        const uint32_t weight = step == 0 ? part * most_weight : part;
+        total[i] += weight;
+        sum[i] += static_cast<double>(weight) * static_cast<double>(values[column[i]]);
       }
-      link += turn * LinkBlock::kLinkBytes;
     }
-    for (uint32_t i = 0; i < places; ++i) out[block.row[first + i]] = sum[i] * block.quantum(first + i);
+    for (uint32_t i = 0; i < places; ++i)
+      out[block.row[first + i]] = sum[i] * (block.sum(first + i) / std::max(1u, total[i]));
   }
 }
 
@@ -58,71 +64,154 @@ constexpr hn::RebindToSigned<F> kI;
 constexpr hn::Half<F> kHalfF;
 constexpr hn::Half<hn::RebindToSigned<F> > kHalfI;
 constexpr hn::Repartition<double, F> kD;
-constexpr hn::Rebind<uint16_t, F> kLow;
-constexpr hn::Rebind<uint8_t, F> kHigh;
+constexpr hn::Rebind<uint16_t, F> kCode;
+constexpr hn::Rebind<uint8_t, F> kByte;
 constexpr size_t kWidth = hn::MaxLanes(F());
 constexpr size_t kParts = kTurn / kWidth;
 using U = hn::Vec<hn::RebindToUnsigned<F> >;
 using D = hn::Vec<hn::Repartition<double, F> >;
 
-// Some of the rows that take turns.
-struct Part {
-  U column;
-  D low, high;  // sums
+// Turns of a group of sixteen rows, decoded.
+struct Turns {
+  static constexpr uint32_t kMost = 16;
+
+  HWY_ALIGN uint32_t columns[kMost * kTurn];
+  HWY_ALIGN uint32_t multiples[kMost * kTurn];
+  HWY_ALIGN uint32_t totals[kTurn];  // of the multiples of each row, where `ends`
+  uint32_t count;
+  uint32_t first;  // place of the group
+  bool ends;       // the group
 };
 
-struct Decoder {
-  U weight_mask;
-  int weight_bits;
-  const float* HWY_RESTRICT values;
-
-  // The next link of each row: `links` from this part's low 16 bits on, the high ones at `high`; `lanes` of
-  // them are there.
-  HWY_INLINE void add_links(const uint8_t* low, const uint8_t* high, size_t lanes, Part& part) const {
-    const auto upper = hn::PromoteTo(kU, hn::PromoteTo(kLow, hn::LoadU(kHigh, high)));
-    const auto lower = hn::PromoteTo(kU, hn::LoadU(kLow, reinterpret_cast<const uint16_t*>(low)));
-    const U code = hn::IfThenElseZero(hn::FirstN(kU, lanes), hn::Or(lower, hn::ShiftLeft<16>(upper)));
-    part.column = hn::Add(part.column, hn::ShiftRightSame(code, weight_bits));
-    const auto weight = hn::BitCast(kI, hn::And(code, weight_mask));
-    const auto light = hn::GatherIndex(kF, values, hn::BitCast(kI, part.column));
-    part.low = hn::MulAdd(hn::PromoteTo(kD, hn::LowerHalf(kHalfI, weight)),
-                          hn::PromoteTo(kD, hn::LowerHalf(kHalfF, light)), part.low);
-    part.high = hn::MulAdd(hn::PromoteTo(kD, hn::UpperHalf(kHalfI, weight)),
-                           hn::PromoteTo(kD, hn::UpperHalf(kHalfF, light)), part.high);
+// Walks through the codes of a block.
+class Decoder {
+ public:
+  Decoder(const BlockView& block, const float* HWY_RESTRICT values)
+      : block_(block),
+        values_(values),
+        most_weight_(hn::Set(kU, (1u << block.weight_bits) - 1)),
+        codes_(block.codes) {
+    begin_group(0);
   }
+
+  // The next turns; false where there are none left.
+  HWY_INLINE bool next(Turns& turns) {
+    if (first_ >= block_.rows) return false;
+    turns.first = first_;
+    for (turns.count = 0; *as_long_ > first_ && turns.count < Turns::kMost; ++turns.count, ++as_long_) {
+      const size_t turn = std::min<size_t>(kTurn, *as_long_ - first_);
+      uint32_t* const columns = turns.columns + turns.count * kTurn;
+      for (size_t p = 0; p < kParts; ++p)
+        decode(p, turn > p * kWidth ? turn - p * kWidth : 0, columns, turns.multiples + turns.count * kTurn);
+      for (size_t i = 0; i < kTurn; ++i) hwy::Prefetch(values_ + columns[i]);
+      codes_ += turn;
+      hwy::Prefetch(codes_ + kCodesAhead);
+    }
+    turns.ends = *as_long_ <= first_;
+    if (turns.ends) {
+      for (size_t p = 0; p < kParts; ++p) hn::Store(totals_[p], kU, turns.totals + p * kWidth);
+      begin_group(first_ + kTurn);
+    }
+    return true;
+  }
+
+ private:
+  static constexpr size_t kCodesAhead = 512;
+
+  void begin_group(uint32_t first) {
+    first_ = first;
+    as_long_ = block_.rows_as_long;
+    if (first >= block_.rows) return;
+    for (size_t p = 0; p < kParts; ++p) {
+      const U start =
+          hn::PromoteTo(kU, hn::PromoteTo(kCode, hn::LoadU(kByte, block_.start + first + p * kWidth)));
+      columns_[p] = hn::Add(hn::Set(kU, block_.base - 1), hn::ShiftLeftSame(start, block_.start_shift));
+      totals_[p] = hn::Zero(kU);
+    }
+  }
+
+  // The next code of each row of a part; `lanes` of them are there.
+  HWY_INLINE void decode(size_t part, size_t lanes, uint32_t* columns, uint32_t* multiples) {
+    const U code = hn::IfThenElseZero(hn::FirstN(kU, lanes),
+                                      hn::PromoteTo(kU, hn::LoadU(kCode, codes_ + part * kWidth)));
+    const U step = hn::ShiftRightSame(code, block_.weight_bits), weight = hn::And(code, most_weight_);
+    const auto is_far = hn::Eq(weight, hn::Zero(kU)), is_large = hn::Eq(step, hn::Zero(kU));
+    // Times the largest step, times the largest weight.
+    const U far = hn::Sub(hn::ShiftLeftSame(step, LinkBlock::kCodeBits - block_.weight_bits), step);
+    const U large = hn::Sub(hn::ShiftLeftSame(weight, block_.weight_bits), weight);
+    const U multiple = hn::IfThenElse(is_large, large, weight);
+    columns_[part] = hn::Add(columns_[part], hn::IfThenElse(is_far, far, step));
+    totals_[part] = hn::Add(totals_[part], multiple);
+    // What has no weight reads the first value: it is at hand, and a row without codes has no column.
+    hn::Store(hn::IfThenZeroElse(is_far, columns_[part]), kU, columns + part * kWidth);
+    hn::Store(multiple, kU, multiples + part * kWidth);
+  }
+
+  const BlockView& block_;
+  const float* HWY_RESTRICT values_;
+  U most_weight_;
+  const uint16_t* HWY_RESTRICT codes_;
+  const uint16_t* HWY_RESTRICT as_long_;
+  uint32_t first_;
+  U columns_[kParts], totals_[kParts];
 };
 
-HWY_INLINE size_t lanes_from(size_t lane, size_t count) { return count > lane ? count - lane : 0; }
+// The rows of a block, group by group.
+class Sums {
+ public:
+  Sums(const BlockView& block, const float* HWY_RESTRICT values, double* HWY_RESTRICT out)
+      : block_(block), values_(values), out_(out) {
+    clear();
+  }
+
+  HWY_INLINE void add(const Turns& turns) {
+    for (uint32_t k = 0; k < turns.count; ++k)
+      for (size_t p = 0; p < kParts; ++p) {
+        const size_t at = k * kTurn + p * kWidth;
+        const auto columns = hn::BitCast(kI, hn::Load(kU, turns.columns + at));
+        const auto multiples = hn::BitCast(kI, hn::Load(kU, turns.multiples + at));
+        const auto light = hn::GatherIndex(kF, values_, columns);
+        low_[p] = hn::MulAdd(hn::PromoteTo(kD, hn::LowerHalf(kHalfI, multiples)),
+                             hn::PromoteTo(kD, hn::LowerHalf(kHalfF, light)), low_[p]);
+        high_[p] = hn::MulAdd(hn::PromoteTo(kD, hn::UpperHalf(kHalfI, multiples)),
+                              hn::PromoteTo(kD, hn::UpperHalf(kHalfF, light)), high_[p]);
+      }
+    if (turns.ends) end_group(turns);
+  }
+
+ private:
+  void clear() {
+    for (size_t p = 0; p < kParts; ++p) low_[p] = high_[p] = hn::Zero(kD);
+  }
+
+  void end_group(const Turns& turns) {
+    HWY_ALIGN double sums[kTurn];
+    for (size_t p = 0; p < kParts; ++p) {
+      hn::Store(low_[p], kD, sums + p * kWidth);
+      hn::Store(high_[p], kD, sums + p * kWidth + kWidth / 2);
+    }
+    const uint32_t end = std::min(block_.rows, turns.first + kTurn);
+    for (uint32_t place = turns.first; place < end; ++place)
+      out_[block_.row[place]] =
+          sums[place - turns.first] * (block_.sum(place) / std::max(1u, turns.totals[place - turns.first]));
+    clear();
+  }
+
+  const BlockView& block_;
+  const float* HWY_RESTRICT values_;
+  double* HWY_RESTRICT out_;
+  D low_[kParts], high_[kParts];
+};
 
 void gather_block(const BlockView& block, const float* HWY_RESTRICT values, double* HWY_RESTRICT out) {
-  const Decoder decoder{hn::Set(kU, (1u << block.weight_bits) - 1), static_cast<int>(block.weight_bits),
-                        values};
-  const uint8_t* HWY_RESTRICT link = block.links;
-  HWY_ALIGN double sums[Links::kRowsPerBlock];
-  for (uint32_t first = 0; first < block.rows; first += kTurn) {
-    Part parts[kParts];
-    for (size_t p = 0; p < kParts; ++p) {
-      // Lanes without a row stay at the block's base.
-      const auto bytes = hn::LoadU(kHigh, block.start + first + p * kWidth);
-      const U start = hn::IfThenElseZero(hn::FirstN(kU, lanes_from(first + p * kWidth, block.rows)),
-                                         hn::PromoteTo(kU, hn::PromoteTo(kLow, bytes)));
-      parts[p].column =
-          hn::Add(hn::Set(kU, block.base), hn::ShiftLeftSame(start, static_cast<int>(block.start_shift)));
-      parts[p].low = parts[p].high = hn::Zero(kD);
-    }
-    for (const uint16_t* HWY_RESTRICT as_long = block.rows_as_long; *as_long > first; ++as_long) {
-      const size_t turn = std::min<size_t>(kTurn, *as_long - first);
-      for (size_t p = 0; p < kParts && p * kWidth < turn; ++p)
-        decoder.add_links(link + 2 * p * kWidth, link + 2 * turn + p * kWidth, turn - p * kWidth, parts[p]);
-      link += turn * LinkBlock::kLinkBytes;
-    }
-    for (size_t p = 0; p < kParts; ++p) {
-      hn::Store(parts[p].low, kD, sums + first + p * kWidth);
-      hn::Store(parts[p].high, kD, sums + first + p * kWidth + kWidth / 2);
-    }
+  Decoder decoder(block, values);
+  Sums sums(block, values, out);
+  Turns turns[2];
+  bool here = decoder.next(turns[0]);
+  for (size_t now = 0; here; now = 1 - now) {
+    here = decoder.next(turns[1 - now]);
+    sums.add(turns[now]);
   }
-  for (uint32_t place = 0; place < block.rows; ++place)
-    out[block.row[place]] = sums[place] * block.quantum(place);
 }
 
 #endif

@@ -1,7 +1,10 @@
 #include "transport/links_pack.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -10,15 +13,12 @@ namespace hemibake {
 namespace {
 
 constexpr double kFinenessPerSum = 200, kLeastFineness = 12, kMostFineness = 64;
-// Multiples of a row that gets over half of all its light by one link: light in a deep pit leaves it by others,
-// however small they are.
+// Multiples of a row that gets over half of all its light by one link: light in a deep pit leaves it by
+// others, however small they are.
 constexpr double kDominatedFineness = 4096;
-constexpr int kFewestWeightBits = 2, kMostWeightBits = 12;
-
-std::span<const Link> open_row(const OpenRows& open, size_t row) {
-  const uint32_t begin = row == 0 ? 0 : open.ends[row - 1];
-  return std::span(open.links).subspan(begin, open.ends[row] - begin);
-}
+constexpr int kMostWeightBits = 10;
+constexpr int kSumBits = 24;
+constexpr size_t kBytesPerRow = 5;  // its sum, its index, its start
 
 double weight_of(const Link& link) { return std::max(0.0, static_cast<double>(link.weight)); }
 
@@ -30,19 +30,28 @@ uint64_t whole_multiples(std::span<const Link> row, double least, std::span<uint
   constexpr int kMostParts = 2 * static_cast<int>(kMostFineness);
   // A finer unit than rounding would take, at the most: with cosines for weights there is one, but far finer.
   const double most_multiple = kMostParts * static_cast<double>(row.size());
-  for (int parts = 1; parts <= kMostParts; ++parts) {
-    uint64_t total = 0;
-    size_t i = 0;
-    for (; i < row.size(); ++i) {
-      const double exact = weight_of(row[i]) * (parts / least);
-      if (exact > most_multiple) break;
-      multiples[i] = static_cast<uint32_t>(exact + 0.5);
-      if (std::abs(exact - multiples[i]) > 1e-4 + 1e-6 * exact) break;
-      total += multiples[i];
-    }
-    if (i == row.size() && static_cast<double>(total) <= most_multiple) return total;
+  const auto is_whole = [](double exact) {
+    return std::abs(exact - static_cast<double>(static_cast<int64_t>(exact + 0.5))) <= 1e-4 + 1e-6 * exact;
+  };
+  // The unit is the least weight over the least common denominator of all weights over it.
+  int parts = 1;
+  for (const Link& link : row) {
+    const double exact = weight_of(link) * (parts / least);
+    if (exact > most_multiple) return 0;
+    int more = 1;
+    while (!is_whole(more * exact))
+      if (++more * parts > kMostParts) return 0;
+    parts *= more;
   }
-  return 0;
+  uint64_t total = 0;
+  const double per_weight = parts / least;
+  for (size_t i = 0; i < row.size(); ++i) {
+    const double exact = weight_of(row[i]) * per_weight;
+    if (exact > most_multiple || !is_whole(exact)) return 0;
+    multiples[i] = static_cast<uint32_t>(exact + 0.5);
+    total += multiples[i];
+  }
+  return static_cast<double>(total) <= most_multiple ? total : 0;
 }
 
 // What rounding a weight down left of its multiple.
@@ -73,8 +82,8 @@ void round_multiples(std::span<const Link> row, double quantum, double total, st
   for (auto remainder = remainders.begin(); remainder != end; ++remainder) ++multiples[remainder->index];
 }
 
-// Weights as multiples of the quantum returned.
-float round_weights(std::span<const Link> row, std::span<uint32_t> multiples) {
+// The sum of the weights; multiples of the row's quantum that have their shares of it.
+double round_weights(std::span<const Link> row, std::span<uint32_t> multiples) {
   double sum = 0, positive = 0, largest = 0, least = std::numeric_limits<double>::infinity();
   size_t count = 0;
   for (const Link& link : row) {
@@ -86,62 +95,57 @@ float round_weights(std::span<const Link> row, std::span<uint32_t> multiples) {
     largest = std::max(largest, weight);
     ++count;
   }
-  std::ranges::fill(multiples, 0);
   if (!(sum > 0)) return 0;
-  if (const uint64_t total = whole_multiples(row, least, multiples))
-    return static_cast<float>(sum / static_cast<double>(total));
+  if (whole_multiples(row, least, multiples) > 0) return sum;
   const double links = static_cast<double>(count);
   double total = std::ceil(
       std::clamp(kFinenessPerSum * sum * std::sqrt(links), kLeastFineness * links, kMostFineness * links));
   if (largest > 0.5) total = std::max(total, kDominatedFineness);
   round_multiples(row, positive / total, total, multiples);
-  return static_cast<float>(sum / std::accumulate(multiples.begin(), multiples.end(), 0.0));
-}
-
-// Calls emit(code) for the links as packed of one row that starts at `column`.
-template <class Emit>
-void encode_row(std::span<const Link> row, std::span<const uint32_t> multiples, uint32_t column,
-                int weight_bits, const Emit& emit) {
-  const uint32_t most_weight = (1u << weight_bits) - 1;
-  const uint32_t most_step = (1u << (static_cast<int>(LinkBlock::kLinkBits) - weight_bits)) - 1;
-  for (size_t i = 0; i < row.size(); ++i) {
-    if (multiples[i] == 0) continue;
-    uint32_t step = row[i].patch - column;
-    column = row[i].patch;
-    for (; step > most_step; step -= most_step) emit(most_step << weight_bits);
-    for (uint32_t left = multiples[i]; left > 0; step = 0) {
-      const uint32_t weight = std::min(left, most_weight);
-      emit(step << weight_bits | weight);
-      left -= weight;
-    }
-  }
+  return sum;
 }
 
 // Rows on their way into a block.
 struct Rows {
   std::vector<uint32_t> multiples;  // of all links
-  std::vector<float> quanta;        // of every row
+  std::vector<double> sums;         // of every row
+  std::vector<uint32_t> before;     // the column each row's first step leads from
   std::vector<uint8_t> starts;
-  std::vector<uint32_t> codes, code_ends;  // links as packed, row by row
-  std::vector<uint32_t> order;             // row at every place
+  std::vector<uint16_t> codes;  // row by row
+  std::vector<uint32_t> code_ends;
+  std::vector<uint32_t> order;  // row at every place
 };
 
-std::span<uint32_t> multiples_of_row(Rows& rows, const OpenRows& open, size_t row) {
-  const uint32_t begin = row == 0 ? 0 : open.ends[row - 1];
-  return std::span(rows.multiples).subspan(begin, open.ends[row] - begin);
+uint32_t begin_of(const std::vector<uint32_t>& ends, size_t row) { return row == 0 ? 0 : ends[row - 1]; }
+uint32_t code_count(const Rows& rows, size_t row) {
+  return rows.code_ends[row] - begin_of(rows.code_ends, row);
 }
 
-template <class Emit>
-void encode_open_row(const LinkBlock& block, const OpenRows& open, Rows& rows, size_t row, int weight_bits,
-                     const Emit& emit) {
-  encode_row(open_row(open, row), multiples_of_row(rows, open, row),
-             block.base + (uint32_t{rows.starts[row]} << block.start_shift), weight_bits, emit);
+void round_rows(const OpenRows& open, LinkBlock& block, Rows& rows) {
+  rows.multiples.assign(open.links.size(), 0);
+  rows.sums.resize(block.rows);
+  double largest = 0;
+  for (size_t r = 0; r < block.rows; ++r) {
+    const uint32_t begin = begin_of(open.ends, r), count = open.ends[r] - begin;
+    rows.sums[r] = round_weights(std::span(open.links).subspan(begin, count),
+                                 std::span(rows.multiples).subspan(begin, count));
+    largest = std::max(largest, rows.sums[r]);
+  }
+  int exponent = 0;
+  if (std::frexp(largest, &exponent) == 0.5) --exponent;
+  block.sum_exponent = static_cast<int16_t>(exponent - kSumBits);
+  for (size_t r = 0; r < block.rows; ++r) {
+    rows.sums[r] = std::floor(std::ldexp(rows.sums[r], -block.sum_exponent) + 0.5);
+    if (rows.sums[r] == 0)
+      std::fill(rows.multiples.begin() + begin_of(open.ends, r), rows.multiples.begin() + open.ends[r], 0);
+  }
 }
 
 // Where the rows start: as near before their first columns as 8 bits tell.
 void set_starts(const OpenRows& open, LinkBlock& block, Rows& rows) {
   constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
-  std::vector<uint32_t> first(block.rows, kNone);
+  std::vector<uint32_t>& first = rows.before;
+  first.assign(block.rows, kNone);
   uint32_t lowest = kNone, highest = 0;
   for (size_t r = 0, i = 0; r < block.rows; ++r) {
     const size_t end = open.ends[r];
@@ -153,104 +157,128 @@ void set_starts(const OpenRows& open, LinkBlock& block, Rows& rows) {
     }
     i = end;
   }
-  block.base = lowest == kNone ? 0 : lowest;
-  block.start_shift = 0;
-  while (lowest != kNone && (highest - lowest) >> block.start_shift > 255) ++block.start_shift;
   rows.starts.assign(block.rows, 0);
-  for (size_t r = 0; r < block.rows; ++r)
-    if (first[r] != kNone)
-      rows.starts[r] = static_cast<uint8_t>((first[r] - block.base) >> block.start_shift);
-}
-
-// The width of weights that takes the fewest links.
-void choose_weight_bits(const OpenRows& open, LinkBlock& block, Rows& rows) {
-  size_t fewest = std::numeric_limits<size_t>::max();
-  for (int bits = kFewestWeightBits; bits <= kMostWeightBits; ++bits) {
-    size_t count = 0;
-    for (size_t r = 0; r < block.rows; ++r)
-      encode_open_row(block, open, rows, r, bits, [&](uint32_t) { ++count; });
-    if (count >= fewest) continue;
-    fewest = count;
-    block.weight_bits = static_cast<uint8_t>(bits);
-  }
-}
-
-void encode_rows(const OpenRows& open, const LinkBlock& block, Rows& rows) {
-  rows.codes.clear();
-  rows.code_ends.clear();
+  if (lowest == kNone) return;
+  block.base = lowest;
+  while ((highest - lowest) >> block.start_shift > 255) ++block.start_shift;
   for (size_t r = 0; r < block.rows; ++r) {
-    encode_open_row(block, open, rows, r, block.weight_bits,
-                    [&](uint32_t code) { rows.codes.push_back(code); });
-    rows.code_ends.push_back(static_cast<uint32_t>(rows.codes.size()));
+    if (first[r] == kNone) continue;
+    rows.starts[r] = static_cast<uint8_t>((first[r] - lowest) >> block.start_shift);
+    first[r] = lowest + (uint32_t{rows.starts[r]} << block.start_shift) - 1;
   }
 }
 
-uint32_t code_begin(const Rows& rows, uint32_t row) { return row == 0 ? 0 : rows.code_ends[row - 1]; }
-uint32_t code_count(const Rows& rows, uint32_t row) { return rows.code_ends[row] - code_begin(rows, row); }
-
-// Appends bytes of numbers to the packed block.
-class Writer {
- public:
-  explicit Writer(std::vector<std::byte>& bytes) : bytes_(bytes) {}
-  template <class Number>
-  void append(Number number) {
-    const auto* from = reinterpret_cast<const std::byte*>(&number);
-    bytes_.insert(bytes_.end(), from, from + sizeof(Number));
-  }
-
- private:
-  std::vector<std::byte>& bytes_;
-};
-
-// Different quanta where an index is shorter; empty where it is not.
-std::vector<float> quantum_table(const std::vector<float>& quanta) {
-  std::vector<float> table = quanta;
-  std::ranges::sort(table);
-  const auto repeated = std::ranges::unique(table);
-  table.erase(repeated.begin(), repeated.end());
-  if (table.size() * sizeof(float) + quanta.size() >= quanta.size() * sizeof(float)) table.clear();
-  return table;
-}
-
-void write_links(const LinkBlock& block, const Rows& rows, Writer& writer) {
-  std::vector<uint32_t> turn;
-  for (uint32_t first = 0; first < block.rows; first += LinkBlock::kRowsInTurn) {
-    const uint32_t end = std::min(block.rows, first + LinkBlock::kRowsInTurn);
-    for (uint32_t k = 0; k < code_count(rows, rows.order[first]); ++k) {
-      turn.clear();
-      for (uint32_t place = first; place < end && code_count(rows, rows.order[place]) > k; ++place)
-        turn.push_back(rows.codes[code_begin(rows, rows.order[place]) + k]);
-      for (const uint32_t code : turn) writer.append(static_cast<uint16_t>(code));
-      for (const uint32_t code : turn) writer.append(static_cast<uint8_t>(code >> 16));
-    }
+// Calls visit(step, multiple) for the links of a row that are stored.
+template <class Visit>
+void visit_steps(const OpenRows& open, const Rows& rows, size_t row, const Visit& visit) {
+  uint32_t column = rows.before[row];
+  for (uint32_t i = begin_of(open.ends, row); i < open.ends[row]; ++i) {
+    if (rows.multiples[i] == 0) continue;
+    visit(open.links[i].patch - column, rows.multiples[i]);
+    column = open.links[i].patch;
   }
 }
 
-void write_block(LinkBlock& block, const Rows& rows) {
-  const std::vector<float> table = quantum_table(rows.quanta);
-  block.quanta = static_cast<uint32_t>(table.empty() ? block.rows : table.size());
+// Codes that numbers with so many bits take beyond the first, about, where a code has `bits` for them.
+size_t more_codes(int number_bits, int bits) {
+  return number_bits <= bits ? 0 : 1 + ((uint64_t{1} << number_bits) >> (2 * bits));
+}
+
+// The width of weights that takes the fewest codes.
+void choose_weight_bits(const OpenRows& open, LinkBlock& block, const Rows& rows) {
+  std::array<size_t, 33> steps{}, multiples{};  // by their numbers of bits
+  for (size_t r = 0; r < block.rows; ++r)
+    visit_steps(open, rows, r, [&](uint32_t step, uint32_t multiple) {
+      ++steps[static_cast<size_t>(std::bit_width(step))];
+      ++multiples[static_cast<size_t>(std::bit_width(multiple))];
+    });
+  size_t fewest = std::numeric_limits<size_t>::max();
+  for (int weight_bits = 1; weight_bits <= kMostWeightBits; ++weight_bits) {
+    size_t more = 0;
+    for (size_t bits = 0; bits < steps.size(); ++bits)
+      more += steps[bits] * more_codes(static_cast<int>(bits), LinkBlock::kCodeBits - weight_bits) +
+              multiples[bits] * more_codes(static_cast<int>(bits), weight_bits);
+    if (more >= fewest) continue;
+    fewest = more;
+    block.weight_bits = static_cast<uint8_t>(weight_bits);
+  }
+  block.links = static_cast<uint32_t>(std::accumulate(multiples.begin(), multiples.end(), size_t{0}));
+}
+
+void encode_rows(const OpenRows& open, LinkBlock& block, Rows& rows) {
+  const int weight_bits = block.weight_bits;
+  const uint32_t most_weight = (1u << weight_bits) - 1;
+  const uint32_t most_step = (1u << (LinkBlock::kCodeBits - weight_bits)) - 1;
+  rows.codes.clear();
+  rows.code_ends.resize(block.rows);
+  const auto emit = [&](uint32_t step, uint32_t weight) {
+    rows.codes.push_back(static_cast<uint16_t>(step << weight_bits | weight));
+  };
+  for (size_t r = 0; r < block.rows; ++r) {
+    visit_steps(open, rows, r, [&](uint32_t step, uint32_t multiple) {
+      if (step > most_step) {
+        uint32_t far = (step - 1) / most_step;
+        step -= far * most_step;
+        for (; far > most_step; far -= most_step) emit(most_step, 0);
+        emit(far, 0);
+      }
+      uint32_t large = (multiple - 1) / most_weight;
+      emit(step, multiple - large * most_weight);
+      for (; large > most_weight; large -= most_weight) emit(0, most_weight);
+      if (large > 0) emit(0, large);
+    });
+    rows.code_ends[r] = static_cast<uint32_t>(rows.codes.size());
+  }
+  block.codes = static_cast<uint32_t>(rows.codes.size());
+}
+
+// Rows by falling number of codes.
+void sort_rows(LinkBlock& block, Rows& rows) {
+  rows.order.resize(block.rows);
+  std::iota(rows.order.begin(), rows.order.end(), 0u);
+  std::ranges::stable_sort(rows.order, std::greater{}, [&](uint32_t row) { return code_count(rows, row); });
   block.longest = block.rows == 0 ? 0 : code_count(rows, rows.order[0]);
-  block.packed.clear();
-  Writer writer(block.packed);
-  if (table.empty()) {
-    for (const uint32_t row : rows.order) writer.append(rows.quanta[row]);
-  } else {
-    for (const float quantum : table) writer.append(quantum);
+}
+
+template <class Number>
+std::byte* write(std::byte* to, Number number) {
+  std::memcpy(to, &number, sizeof(Number));
+  return to + sizeof(Number);
+}
+
+std::byte* write_codes(const LinkBlock& block, const Rows& rows, std::byte* to) {
+  for (uint32_t first = 0; first < block.rows; first += LinkBlock::kRowsInTurn) {
+    std::array<uint32_t, LinkBlock::kRowsInTurn> next{}, end{};
+    for (uint32_t i = 0; i < LinkBlock::kRowsInTurn && first + i < block.rows; ++i) {
+      next[i] = begin_of(rows.code_ends, rows.order[first + i]);
+      end[i] = rows.code_ends[rows.order[first + i]];
+    }
+    while (next[0] < end[0])
+      for (uint32_t i = 0; i < LinkBlock::kRowsInTurn && next[i] < end[i]; ++i)
+        to = write(to, rows.codes[next[i]++]);
   }
-  auto longer = static_cast<uint16_t>(block.rows);
+  return to;
+}
+
+// In the order of BlockView.
+void write_block(LinkBlock& block, const Rows& rows) {
+  block.packed_bytes = (size_t{block.longest} + 1 + block.codes) * sizeof(uint16_t) +
+                       size_t{block.rows} * kBytesPerRow + LinkBlock::kPadding;
+  block.packed.resize(block.packed_bytes);
+  std::byte* to = block.packed.data();
+  uint32_t longer = block.rows;
   for (uint32_t k = 0; k <= block.longest; ++k) {
-    while (longer > 0 && code_count(rows, rows.order[longer - 1u]) <= k) --longer;
-    writer.append(longer);
+    while (longer > 0 && code_count(rows, rows.order[longer - 1]) <= k) --longer;
+    to = write(to, static_cast<uint16_t>(longer));
   }
-  for (const uint32_t row : rows.order) writer.append(static_cast<uint8_t>(row));
-  for (const uint32_t row : rows.order) writer.append(rows.starts[row]);
-  if (!table.empty())
-    for (const uint32_t row : rows.order)
-      writer.append(static_cast<uint8_t>(std::ranges::lower_bound(table, rows.quanta[row]) - table.begin()));
-  write_links(block, rows, writer);
-  block.packed.resize(block.packed.size() + LinkBlock::kPadding);
-  block.packed.shrink_to_fit();
-  block.packed_bytes = block.packed.size();
+  to = write_codes(block, rows, to);
+  const auto sum_less_1 = [&](uint32_t row) {
+    return static_cast<uint32_t>(std::max(rows.sums[row], 1.0)) - 1;
+  };
+  for (const uint32_t row : rows.order) to = write(to, static_cast<uint16_t>(sum_less_1(row)));
+  for (const uint32_t row : rows.order) to = write(to, static_cast<uint8_t>(sum_less_1(row) >> 16));
+  for (const uint32_t row : rows.order) to = write(to, static_cast<uint8_t>(row));
+  for (const uint32_t row : rows.order) to = write(to, rows.starts[row]);
 }
 
 }  // namespace
@@ -259,18 +287,11 @@ LinkBlock pack_block(const OpenRows& open) {
   thread_local Rows rows;  // scratch
   LinkBlock block;
   block.rows = static_cast<uint32_t>(open.ends.size());
-  rows.multiples.assign(open.links.size(), 0);
-  rows.quanta.clear();
-  for (size_t r = 0; r < block.rows; ++r)
-    rows.quanta.push_back(round_weights(open_row(open, r), multiples_of_row(rows, open, r)));
-  block.links =
-      static_cast<uint32_t>(std::ranges::count_if(rows.multiples, [](uint32_t k) { return k > 0; }));
+  round_rows(open, block, rows);
   set_starts(open, block, rows);
   choose_weight_bits(open, block, rows);
   encode_rows(open, block, rows);
-  rows.order.resize(block.rows);
-  std::iota(rows.order.begin(), rows.order.end(), 0u);
-  std::ranges::stable_sort(rows.order, std::greater{}, [](uint32_t row) { return code_count(rows, row); });
+  sort_rows(block, rows);
   write_block(block, rows);
   return block;
 }

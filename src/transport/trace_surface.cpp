@@ -14,7 +14,7 @@ namespace hemibake {
 namespace {
 
 // Without links texels are traced in tiles of this size: what a tile's receivers meet stays in the cache.
-constexpr uint32_t kTileWidth = 64, kTileHeight = 16;
+constexpr uint32_t kTileWidth = 128, kTileHeight = 64;
 
 // Blocks of patches are traced together, as many as leave every thread enough to do: the same node of many
 // facets sees along the same paths.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -13,10 +14,10 @@
 namespace hemibake {
 namespace {
 
-// Smooth in its left half, rough in its right one; 40 cells end in a run of 8.
+// Smooth in its left half, rough in its right one; 40 cells end in a run of 8, 21 rows in a tile of 5.
 Surface half_rough_surface(Edge edge) {
-  Surface surface = white_noise_surface(40, 9, 0.5, edge);
-  for (int y = 0; y < 9; ++y)
+  Surface surface = white_noise_surface(40, 21, 0.5, edge);
+  for (int y = 0; y < 21; ++y)
     for (int x = 0; x < 20; ++x) surface.heights_m(x, y) = 0.25f;
   return surface;
 }
@@ -50,6 +51,19 @@ TEST(Patches, EveryNodeOfEveryFacetOnceAndAlikeInARun) {
           << facet;
     }
   }
+}
+
+TEST(Patches, ATileIsOnePieceOfMemory) {
+  const Surface surface = half_rough_surface(Edge::kOpen);
+  const PatchSet patches = make_patches(surface, Patches::kFacets);
+  uint32_t run = 0;
+  for (const uint32_t first_row : {0u, 16u})
+    for (const uint32_t column : {0u, 16u, 32u})
+      for (uint32_t row = first_row; row < std::min(20u, first_row + 16); ++row, ++run) {
+        EXPECT_EQ(patch_run(patches, run).first_cell, row * 39 + column);
+        EXPECT_EQ(run_of_patch(patches, patches.first[run + 1] - 1).first, patches.first[run]);
+      }
+  EXPECT_EQ(patches.first.size(), run + 1);
 }
 
 // Light that is linear on a facet comes back exactly in the mean over the choices, wherever it is asked for;

@@ -231,11 +231,16 @@ TEST(EmbreeTracer, FacetLightAddsUpToTheOpening) {
   Row row;
   TracerCounts counts;
   std::vector<double> light;
+  double variance = 0;  // of the sum, at most: rays are stratified
   for (uint32_t patch = 0; patch < tracer->patches().count; ++patch) {
     tracer->trace_patch(patch, false, row, counts);
     light.push_back(row.direct_over_pi);
+    const double share = patch_area_texels(surface, tracer->patches(), patch) / (0.5 * facet_count(surface));
+    variance += share * share * light.back() * (1 - light.back()) / 256;
   }
-  EXPECT_NEAR(sum_over_opening(surface, tracer->patches(), std::span<const double>(light)), 1, 1e-3);
+  // The rule over the nodes of a facet errs by up to 0.2 % on rough maps (surface/patches.h).
+  EXPECT_NEAR(sum_over_opening(surface, tracer->patches(), std::span<const double>(light)), 1,
+              0.002 + 3 * std::sqrt(variance));
 }
 
 }  // namespace

@@ -92,7 +92,8 @@ TEST(ErrorEstimate, AgainstTheReferee) {
     const double actual = std::abs(mean_over_pi(baked.bounces.irradiance[1]) - first);
     const double noise = 3 * std::hypot(std::sqrt(variance), baked.errors.mean_first_rays);
     EXPECT_LT(actual, 2 * baked.errors.first_patches + noise);
-    EXPECT_LT(baked.errors.first_patches, 0.005 * first);
+    // Told from the same rays, it has their noise.
+    EXPECT_LT(baked.errors.first_patches, 0.005 * first + noise);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "transport/links.h"
 
 #include <gmock/gmock.h>
+#include <hwy/targets.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -62,6 +63,9 @@ std::vector<Link> pack_and_unpack(const std::vector<Link>& row, uint32_t columns
   return unpacked;
 }
 
+// Half of the last bit that sums have in a block whose other rows add up to ½.
+double half_bit_of_sums(double sum) { return std::exp2(std::ceil(std::log2(std::max(sum, 0.5))) - 25); }
+
 // Sum kept, no weight off by a quantum, order and patches kept.
 void expect_packed_well(const std::vector<Link>& row, const std::vector<Link>& packed) {
   double sum = 0, packed_sum = 0, positive = 0;
@@ -69,8 +73,8 @@ void expect_packed_well(const std::vector<Link>& row, const std::vector<Link>& p
     sum += static_cast<double>(link.weight);
     positive += link.weight > 0;
   }
-  // The quantum is at most a twelfth of the mean weight (see links.h) but for its rounding to float.
-  const double quantum = sum / (12 * positive) * (1 + 1e-6);
+  // The quantum is at most a twelfth of the mean weight (see links.h), but for the rounding of the sum.
+  const double quantum = sum / (12 * positive) * (1 + 1e-6) + half_bit_of_sums(sum);
   size_t at = 0;
   for (const Link& link : row) {
     const bool kept = at < packed.size() && packed[at].patch == link.patch;
@@ -79,8 +83,8 @@ void expect_packed_well(const std::vector<Link>& row, const std::vector<Link>& p
     packed_sum += weight;
   }
   EXPECT_EQ(at, packed.size());
-  // The quantum and every weight are rounded to float.
-  EXPECT_NEAR(packed_sum, sum, sum * 1.2e-7);
+  // Every weight is rounded to float.
+  EXPECT_NEAR(packed_sum, sum, half_bit_of_sums(sum) + sum * 6e-8);
 }
 
 TEST(Links, GatherIsTheMatrixProduct) {
@@ -106,6 +110,15 @@ TEST(Links, GatherAgreesWithTheUnpackedRows) {
     std::vector<double> values(columns), out(links.rows);
     for (double& value : values) value = static_cast<double>(random() % 1000);
     gather(links, values, out);
+    // Products are exact in double and added in the order of the links.
+    const int64_t all = hwy::SupportedTargets();
+    for (int64_t left = all; left != 0; left &= left - 1) {
+      hwy::SetSupportedTargetsForTest(left & -left);
+      std::vector<double> again(links.rows);
+      gather(links, values, again);
+      EXPECT_EQ(again, out) << hwy::TargetName(left & -left);
+    }
+    hwy::SetSupportedTargetsForTest(0);
     const std::vector<double> sums = row_sums(links);
     BlockRows rows;
     for (uint32_t i = 0; i < links.rows; ++i) {
@@ -154,6 +167,47 @@ TEST(Links, ExtremeRows) {
   const std::vector<Link> steps{{0, 0.25f}, {2000000000, 0.5f}};
   expect_packed_well(steps, pack_and_unpack(steps, 1u << 31, 5000));
   expect_packed_well({{0, 1.0f}}, pack_and_unpack({{0, 1.0f}}, 1, 5000));
+}
+
+// Every length of step and every multiple, at every share of a code that steps and multiples get.
+TEST(Links, StepsAndMultiplesStayExact) {
+  for (const uint32_t most_multiple : {1u, 3u, 8u, 40u, 127u})
+    for (const uint32_t usual_step : {1u, 200u, 5000u, 300000u}) {
+      std::vector<Link> row;
+      std::vector<uint32_t> multiples;
+      uint32_t patch = 0;
+      const auto add = [&](uint32_t step) {
+        patch += step;
+        multiples.push_back(1 + static_cast<uint32_t>(row.size() * 7) % most_multiple);
+        row.push_back({patch, std::ldexp(static_cast<float>(multiples.back()), -17)});
+      };
+      for (uint32_t power = 0; power < 28; ++power)
+        for (const uint32_t step : {(1u << power) - 1, 1u << power, (1u << power) + 1})
+          if (step > 0) add(step);
+      for (int i = 0; i < 200; ++i) add(usual_step);
+      const std::vector<Link> packed = pack_and_unpack(row, 1u << 31);
+      ASSERT_EQ(packed.size(), row.size());
+      for (size_t i = 0; i < row.size(); ++i) {
+        ASSERT_EQ(packed[i].patch, row[i].patch);
+        ASSERT_EQ(packed[i].weight, row[i].weight) << most_multiple << ' ' << usual_step;
+      }
+    }
+}
+
+// Sums that are multiples of their last bit, up to 1 and to 2 itself.
+TEST(Links, SumsAreExact) {
+  for (const double scale : {1.0, 2.0, 0x1p-40}) {
+    Links links = make_links(5, 100);
+    const std::vector<double> sums{scale, scale * 0x1p-24, 0, scale * 0.75, scale * (1 - 0x1p-24)};
+    for (const double sum : sums)
+      append_row(links.blocks[0],
+                 std::vector<Link>{{7, static_cast<float>(sum / 2)}, {8, static_cast<float>(sum - sum / 2)}});
+    finish_blocks(links);
+    EXPECT_EQ(row_sums(links), sums);
+    std::vector<double> out(5);
+    gather(links, std::vector<double>(100, 1), out);
+    EXPECT_EQ(out, sums);
+  }
 }
 
 // What merging leaves of a row that is sky but for rounding.
