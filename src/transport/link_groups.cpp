@@ -164,16 +164,16 @@ void collect_entries(const Links& links, std::span<const float> albedo, std::spa
   });
 }
 
-// passed_on becomes (1 − passed_on)⁻¹, or 1 where that does not exist. Gauss and Jordan, in place; rows that
+// `entries` become (1 − entries)⁻¹, or 1 where that does not exist. Gauss and Jordan, in place; rows that
 // pass on at most all light need no pivots.
-void invert(std::span<float> passed_on, size_t size) {
+void invert(std::span<float> entries, size_t size) {
   std::array<double, LinkGroups::kMostMembers * LinkGroups::kMostMembers> a;
-  for (size_t i = 0; i < size * size; ++i) a[i] = -static_cast<double>(passed_on[i]);
+  for (size_t i = 0; i < size * size; ++i) a[i] = -static_cast<double>(entries[i]);
   for (size_t i = 0; i < size; ++i) a[i * size + i] += 1;
   for (size_t k = 0; k < size; ++k) {
     const double pivot = a[k * size + k];
     if (!(pivot > kLeastLoss)) {
-      for (size_t i = 0; i < size * size; ++i) passed_on[i] = i % (size + 1) == 0;
+      for (size_t i = 0; i < size * size; ++i) entries[i] = i % (size + 1) == 0;
       return;
     }
     a[k * size + k] = 1;
@@ -185,7 +185,7 @@ void invert(std::span<float> passed_on, size_t size) {
       for (size_t j = 0; j < size; ++j) a[i * size + j] -= factor * a[k * size + j];
     }
   }
-  for (size_t i = 0; i < size * size; ++i) passed_on[i] = static_cast<float>(a[i]);
+  for (size_t i = 0; i < size * size; ++i) entries[i] = static_cast<float>(a[i]);
 }
 
 }  // namespace
