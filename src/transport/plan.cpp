@@ -91,8 +91,8 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
   if (options.with_links) {
     const size_t patches = make_patches(surface, options.patches).count;
     plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 3) + 32) + patches * 56;
-    // Light and residual of the solver, and the four directions it keeps.
-    if (options.converges) plan.plane_bytes += texels * 8 + patches * 8 * (2 + 2 * 4);
+    // Light and residual of the solver, the four directions it keeps, and at most 32 bytes for its groups.
+    if (options.converges) plan.plane_bytes += texels * 8 + patches * (8 * (2 + 2 * 4) + 32);
   }
   return plan;
 }

@@ -73,13 +73,39 @@ TEST(LightSolver, AgreesWithEliminationAtAnyAlbedo) {
     std::vector<float> albedos(patches, albedo);
     // Below 0: every patch another one.
     for (size_t i = 0; i < patches && albedo < 0; ++i) albedos[i] = static_cast<float>(i * 7 % 11) / 10;
+    constexpr double kResidual = 1e-13;
     std::vector<double> light;
-    solve(seen, albedos, 1e-13, light);
-    const std::vector<double> exact = solve_densely(seen.patches, albedos, direct_of(seen));
-    // Every product rounds what it multiplies to float: 2⁻²⁵ of the largest direction, the first, which is
-    // below 1. Errors of a row's links are independent, so that what they add up to stays below that too.
-    for (size_t i = 0; i < patches; ++i) ASSERT_NEAR(light[i], exact[i], 0x1p-25) << albedo;
+    solve(seen, albedos, kResidual, light);
+    const std::vector<double> exact = solve_densely(seen.patches, albedos, direct_of(seen)),
+                              sums = solve_densely(seen.patches, albedos, std::vector<double>(patches, 1.0));
+    // What is left of a residual adds up to that; products round what they multiply to nothing.
+    const double tolerance = 2 * kResidual * *std::ranges::max_element(sums);
+    for (size_t i = 0; i < patches; ++i) ASSERT_NEAR(light[i], exact[i], tolerance) << albedo;
   }
+}
+
+// Pairs that see each other and lose 2⁻⁶ … 2⁻¹² of their light to a node that sees the sky by half, and that
+// sees one of each pair.
+TEST(LightSolver, LightStaysInDeepPits) {
+  constexpr uint32_t kPairs = 7;
+  Links links = make_links(2 * kPairs + 1, 2 * kPairs + 1);
+  std::vector<Link> sky;
+  for (uint32_t pair = 0; pair < kPairs; ++pair) {
+    const float lost = std::ldexp(1.0f, -6 - static_cast<int>(pair));
+    append_row(links.blocks[0], std::vector<Link>{{2 * pair + 1, 1 - lost}, {2 * kPairs, lost}});
+    append_row(links.blocks[0], std::vector<Link>{{2 * pair, 1.0f}});
+    sky.push_back({2 * pair, 0.5f / 8});
+  }
+  append_row(links.blocks[0], sky);
+  finish_blocks(links);
+  // All in rows that add up to 1 with their sky, so that light is 1 everywhere.
+  std::vector<double> direct = row_sums(links);
+  for (double& value : direct) value = 1 - value;
+  LightSolver solver(links, {}, std::vector<double>(direct.size()), direct);
+  int products = 0;
+  while (solver.largest_residual() > 1e-14 && solver.step()) ++products;
+  EXPECT_LE(products, 8 + 2 * 3);  // eight before the groups; then all pairs are alike: two ways to go
+  for (const double value : solver.light()) EXPECT_NEAR(value, 1, 1e-10);
 }
 
 // Deep pits at albedo 1, where the light is 1 everywhere in the end: neither made nor lost.
