@@ -109,7 +109,7 @@ glm::dvec2 node_start_uv(uint32_t node, glm::dvec2 point);
 
 // Weight of a node in the mean over its facet's area; adds up to 1 over the nodes: the rule for quadratic
 // elements on a coarsely cut facet, three quarters of the rule for linear ones on a finely cut one. Light is
-// darkest along the folds of the surface; measured, so the mean of E₀ is off by less than 0.1 % on all maps.
+// darkest along the folds of the surface; measured so, the mean of E₀ is off by 0.1 % or less.
 double node_area_share(int k, uint32_t node);
 
 // Area a node stands for, texels².
