@@ -13,6 +13,8 @@
 
 namespace hemibake {
 
+inline constexpr uint32_t kNoFacet = 0xffffffff;
+
 // Corners of a facet in texels, not wrapped: x, y may equal the width or height on a wrapping map.
 struct FacetCorners {
   std::array<glm::ivec2, 3> texel;  // [0] is the right-angled corner

@@ -109,16 +109,16 @@ std::array<NodeShare, 3> node_shares(int k, glm::dvec2 uv) {
 struct FacetInRun {
   PatchRun run;
   uint32_t half, cell;
-  int k;
-  uint32_t patch(const NodeShare& share) const { return run.patch(half, node_at(k, share.a, share.b), cell); }
+  int k() const { return run.subdivision(half, cell); }
+  uint32_t patch(const NodeShare& share) const {
+    return run.patch(half, node_at(k(), share.a, share.b), cell);
+  }
 };
 
 FacetInRun facet_in_run(const PatchSet& patches, uint32_t facet) {
   const uint32_t cell = facet / 2, row = cell / patches.columns, column = cell - row * patches.columns;
   const uint32_t cell_in_run = column % kRunCells;
-  FacetInRun result{run_at(patches, row, column - cell_in_run), facet % 2, cell_in_run, 0};
-  result.k = result.run.subdivision(result.half, cell_in_run);
-  return result;
+  return {run_at(patches, row, column - cell_in_run), facet % 2, cell_in_run};
 }
 
 }  // namespace
@@ -201,7 +201,7 @@ FacetNode facet_node(const PatchSet& patches, uint32_t patch) {
 
 std::array<PatchShare, 3> patch_shares(const PatchSet& patches, uint32_t facet, glm::dvec2 uv) {
   const FacetInRun place = facet_in_run(patches, facet);
-  const std::array<NodeShare, 3> nodes = node_shares(place.k, uv);
+  const std::array<NodeShare, 3> nodes = node_shares(place.k(), uv);
   std::array<PatchShare, 3> shares;
   for (size_t i = 0; i < nodes.size(); ++i) shares[i] = {place.patch(nodes[i]), nodes[i].share};
   return shares;
@@ -209,7 +209,7 @@ std::array<PatchShare, 3> patch_shares(const PatchSet& patches, uint32_t facet, 
 
 uint32_t draw_patch(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double choice) {
   const FacetInRun place = facet_in_run(patches, facet);
-  const std::array<NodeShare, 3> nodes = node_shares(place.k, uv);
+  const std::array<NodeShare, 3> nodes = node_shares(place.k(), uv);
   const size_t drawn = choice < nodes[0].share ? 0 : choice < nodes[0].share + nodes[1].share ? 1 : 2;
   return place.patch(nodes[drawn]);
 }

@@ -18,7 +18,7 @@ void add_bilinear_links(const Surface& surface, glm::dvec2 position, double weig
 
 // The same at `uv` of a facet (surface/patches.h), for nodes on facets. A hit nearer than a quarter texel is
 // linked to all nodes it lies between, in sixteenths, rounded by `choice`: few nodes are that near, so these
-// links merge, and light in a deep fold always finds its way out. A farther one is linked to one of them,
+// links merge, and light in a deep fold finds its way out. A farther one is linked to one of them,
 // drawn by `choice` in [0, 1).
 void add_node_links(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double distance_texels,
                     double choice, double weight, std::vector<Link>& links);

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "sampling/low_discrepancy.h"
+#include "surface/facets.h"
 #include "tracers/link_merge.h"
 #include "tracers/slice_families.h"
 #include "tracers/slice_field.h"
@@ -35,8 +36,6 @@ constexpr double kLeastBlocked = 1e-5;
 // Hits wanted of a receiver that would have none.
 constexpr double kFewestHits = 8;
 
-constexpr uint32_t kNoFacet = 0xffffffff;
-
 static_assert(kSliceLanes == kRunCells);
 
 // The receivers asked for of one packet.
@@ -59,10 +58,6 @@ uint32_t first_bits(uint32_t bits, uint32_t count) {
   uint32_t others = bits;
   for (; count > 0 && others != 0; --count) others &= others - 1;
   return bits & ~others;
-}
-
-glm::dvec3 mean_direction(const SliceSums& sums, size_t lane) {
-  return {sums.x[lane], sums.y[lane], sums.z[lane]};
 }
 
 class SliceTracer final : public Tracer {
@@ -92,7 +87,7 @@ class SliceTracer final : public Tracer {
 
  private:
   int turn_of(const SlicePaths& paths, uint64_t stream, uint64_t place) const;
-  void choose_hits(int per_slice, uint64_t stream, uint64_t place, uint64_t step, SlicePacket& packet) const;
+  void choose_hits(int per_slice, uint64_t stream, uint64_t place, SlicePacket& packet) const;
   SlicePacket texel_packet(int x, int y) const;
   SlicePacket node_packet(const NodeGroup& group) const;
   std::span<const PacketView> look(const SlicePaths& paths, WalkFor what,
@@ -126,13 +121,11 @@ int SliceTracer::turn_of(const SlicePaths& paths, uint64_t stream, uint64_t plac
 }
 
 // The mean over the azimuths of the weight of a receiver's slice is half the secant of its tilt.
-void SliceTracer::choose_hits(int per_slice, uint64_t stream, uint64_t place, uint64_t step,
-                              SlicePacket& packet) const {
+void SliceTracer::choose_hits(int per_slice, uint64_t stream, uint64_t place, SlicePacket& packet) const {
   for (uint64_t lane = 0; lane < kSliceLanes; ++lane) {
     const double x = static_cast<double>(packet.rim_x[lane]), y = static_cast<double>(packet.rim_y[lane]);
     packet.hits_per_weight[lane] = static_cast<float>(2 * per_slice / std::sqrt(1 + x * x + y * y));
-    packet.place[lane] =
-        static_cast<float>(unit_interval(mix_bits(options_.seed, stream, place + step * lane)));
+    packet.place[lane] = static_cast<float>(unit_interval(mix_bits(options_.seed, stream, place + lane)));
   }
 }
 
@@ -151,7 +144,7 @@ SlicePacket SliceTracer::texel_packet(int x, int y) const {
     packet.rim_x[l] = -n.x / n.z;
     packet.rim_y[l] = -n.y / n.z;
   }
-  choose_hits(kTexelHits, kTexelPlace, surface_.heights_m.index(x, y), 1, packet);
+  choose_hits(kTexelHits, kTexelPlace, surface_.heights_m.index(x, y), packet);
   return packet;
 }
 
@@ -175,7 +168,7 @@ SlicePacket SliceTracer::node_packet(const NodeGroup& group) const {
     packet.rim_x[l] = packet.plane_x[l] = height(1, corner) - height(0, corner);
     packet.rim_y[l] = packet.plane_y[l] = height(corner, 1) - height(corner, 0);
   }
-  choose_hits(kNodeHits, kNodePlace, uint64_t{group.first} * kSliceLanes, 1, packet);
+  choose_hits(kNodeHits, kNodePlace, uint64_t{group.first} * kSliceLanes, packet);
   return packet;
 }
 
@@ -207,9 +200,8 @@ void SliceTracer::find_missed_hits(const SlicePaths& paths, const SlicePacket& p
   bool any = false;
   for (size_t lane = 0; lane < kSliceLanes; ++lane) {
     if ((packet.lanes >> lane & 1) == 0 || !view.hits[lane].empty()) continue;
-    const glm::dvec3 normal_over_z(-packet.rim_x[lane], -packet.rim_y[lane], 1);
-    const double whole = glm::dot(normal_over_z, mean_direction(view.hemisphere, lane));
-    const double blocked = whole - glm::dot(normal_over_z, mean_direction(view.sky, lane));
+    const double whole = cosine_sum(packet, view.hemisphere, lane);
+    const double blocked = whole - cosine_sum(packet, view.sky, lane);
     if (blocked < kLeastBlocked * whole) continue;
     missed.hits_per_weight[lane] = static_cast<float>(kFewestHits / blocked);
     any = true;
@@ -253,16 +245,14 @@ void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacke
 void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, const PacketView& view,
                            size_t lane, uint32_t own_facet, double choice, bool with_links, Row& row,
                            TracerCounts& counts) const {
-  const double rim_x = static_cast<double>(packet.rim_x[lane]),
-               rim_y = static_cast<double>(packet.rim_y[lane]);
-  const glm::dvec3 normal_over_z(-rim_x, -rim_y, 1);
-  const glm::dvec3 sky = mean_direction(view.sky, lane);
-  const double whole = glm::dot(normal_over_z, mean_direction(view.hemisphere, lane));
+  const glm::dvec3 sky(view.sky.x[lane], view.sky.y[lane], view.sky.z[lane]);
   // Over what the same azimuths give with nothing in the way: exactly 1 on open ground.
   row.visible_fraction = std::clamp(view.sky.uniform[lane] / view.hemisphere.uniform[lane], 0.0, 1.0);
-  row.direct_over_pi = std::clamp(glm::dot(normal_over_z, sky) / whole, 0.0, 1.0);
+  row.direct_over_pi =
+      std::clamp(cosine_sum(packet, view.sky, lane) / cosine_sum(packet, view.hemisphere, lane), 0.0, 1.0);
   const double length = glm::length(sky);
-  row.bent_normal = length > 0 ? sky / length : glm::normalize(normal_over_z);
+  row.bent_normal =
+      length > 0 ? sky / length : glm::normalize(glm::dvec3(-packet.rim_x[lane], -packet.rim_y[lane], 1));
   row.links.clear();
   counts.rays += static_cast<uint64_t>(paths.azimuths);
   counts.cut_short += view.cut_short[lane];

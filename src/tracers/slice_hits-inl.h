@@ -28,6 +28,15 @@ struct Vectors {
   V part[kParts];
 };
 
+// Where the lanes of a packet start, and what they have met.
+struct Lanes {
+  Vectors base, rise;  // the start is `rise` above `base`
+  Vectors to_top;      // from the start to the highest texel
+  Vectors rim;         // lowest slope
+  Vectors slope;       // of the horizon so far
+  Vectors above;       // only with stretches: cosine_above the horizon so far
+};
+
 HWY_INLINE V broadcast(double value) { return hn::Set(kF, static_cast<float>(value)); }
 
 HWY_INLINE Vectors load(const LaneArray<float>& values) {
@@ -43,6 +52,15 @@ HWY_INLINE Vectors along(const LaneArray<float>& a, const LaneArray<float>& b, d
   for (size_t p = 0; p < kParts; ++p)
     v.part[p] = hn::MulAdd(va.part[p], broadcast(x), hn::Mul(vb.part[p], broadcast(y)));
   return v;
+}
+
+// Calls act(lane of the part) for every lane of the mask.
+template <class Act>
+HWY_INLINE void for_each_lane(hn::Mask<F> mask, const Act& act) {
+  uint8_t bytes[8] = {};
+  hn::StoreMaskBits(kF, mask, bytes);
+  for (uint32_t bits = bytes[0] | static_cast<uint32_t>(bytes[1]) << 8; bits != 0; bits &= bits - 1)
+    act(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
 }
 
 // ∫ over the elevations θ from slope m to the zenith of cos²θ and of sinθ cosθ.

@@ -12,10 +12,9 @@ namespace hemibake {
 std::vector<RayRecord> replay_slices(const Surface& surface, const SlicePaths& paths,
                                      const SlicePacket& packet, const PacketView& view, size_t lane) {
   const glm::dvec2 texel(packet.x + static_cast<int>(lane), packet.y);
-  const SliceSums& all = view.hemisphere;
   const glm::dvec2 rim_slope(packet.rim_x[lane], packet.rim_y[lane]);
-  const double uniform_whole = all.uniform[lane];
-  const double cosine_whole = all.z[lane] - rim_slope.x * all.x[lane] - rim_slope.y * all.y[lane];
+  const double uniform_whole = view.hemisphere.uniform[lane];
+  const double cosine_whole = cosine_sum(packet, view.hemisphere, lane);
 
   std::vector<RayRecord> records;
   auto stretch = view.stretches[lane].begin();

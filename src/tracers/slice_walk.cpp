@@ -38,15 +38,6 @@ inline int wrap_near(int i, int n) {
 HWY_BEFORE_NAMESPACE();
 namespace hemibake {
 namespace HWY_NAMESPACE {
-// Where the lanes of a packet start, and what they have met.
-struct Lanes {
-  Vectors base, rise;  // the start is `rise` above `base`
-  Vectors to_top;      // from the start to the highest texel
-  Vectors rim;         // lowest slope
-  Vectors slope;       // of the horizon so far
-  Vectors above;       // only with stretches: cosine_above the horizon so far
-};
-
 // One path at a time, for packet after packet.
 class PathWalk {
  public:
@@ -224,15 +215,6 @@ HWY_INLINE void PathWalk::raise_horizon(const SlicePacket& packet, int segment, 
   cross_segment(packet, segment, lanes,
                 [&](size_t p, V slope, const glm::ivec2&, const Crossing&, const FacetBefore&)
                     HWY_ATTR { lanes.slope.part[p] = hn::Max(lanes.slope.part[p], slope); });
-}
-
-// Calls act(lane of the part) for every lane of the mask.
-template <class Act>
-HWY_INLINE void for_each_lane(hn::Mask<F> mask, const Act& act) {
-  uint8_t bytes[8] = {};
-  hn::StoreMaskBits(kF, mask, bytes);
-  for (uint32_t bits = bytes[0] | static_cast<uint32_t>(bytes[1]) << 8; bits != 0; bits &= bits - 1)
-    act(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
 }
 
 HWY_INLINE void PathWalk::find_stretches(const SlicePacket& packet, uint32_t azimuth, int segment,

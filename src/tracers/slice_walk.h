@@ -62,6 +62,12 @@ struct PacketView {
   LaneArray<uint32_t> cut_short{};
 };
 
+// ∫ cosine to the normal of a lane's receiver, over normal.z, of what the sums add up.
+inline double cosine_sum(const SlicePacket& packet, const SliceSums& sums, size_t lane) {
+  return -static_cast<double>(packet.rim_x[lane]) * sums.x[lane] -
+         static_cast<double>(packet.rim_y[lane]) * sums.y[lane] + sums.z[lane];
+}
+
 // Keeps the memory of hits and stretches.
 inline void clear(PacketView& view) {
   view.hemisphere = view.sky = {};

@@ -88,15 +88,11 @@ bool keeps_energy(const Links& links, const std::vector<float>& direct) {
 // Rows whose one link leads to themselves and loses nothing, ascending.
 std::vector<uint32_t> rows_that_see_only_themselves(const Links& links) {
   std::vector<uint32_t> closed;
-  BlockRows rows;
-  for (size_t b = 0; b < links.blocks.size(); ++b) {
-    unpack_block(links.blocks[b], rows);
-    for (uint32_t i = 0; i + 1 < rows.row_begin.size(); ++i) {
-      const uint32_t link = rows.row_begin[i], row = static_cast<uint32_t>(b) * Links::kRowsPerBlock + i;
-      if (rows.row_begin[i + 1] == link + 1 && rows.patches[link] == row && rows.weights[link] >= 1)
-        closed.push_back(row);
-    }
-  }
+  for (size_t b = 0; b < links.blocks.size(); ++b)
+    visit_rows(links, b,
+               [&](uint32_t row, std::span<const uint32_t> patches, std::span<const float> weights) {
+                 if (patches.size() == 1 && patches[0] == row && weights[0] >= 1) closed.push_back(row);
+               });
   return closed;
 }
 

@@ -29,18 +29,8 @@ bool is_stronger(const StrongLink& a, const StrongLink& b) {
   return std::tuple(-a.weight, a.row, a.column) < std::tuple(-b.weight, b.row, b.column);
 }
 
-float passed_on(const BlockRows& rows, uint32_t link, std::span<const float> albedo) {
-  return rows.weights[link] * (albedo.empty() ? 1.0f : albedo[rows.patches[link]]);
-}
-
-// Calls visit(row, rows, begin, end) for all rows of a block, links [begin, end).
-template <class Visit>
-void visit_rows(const Links& links, size_t block, const Visit& visit) {
-  BlockRows rows;
-  unpack_block(links.blocks[block], rows);
-  const auto first = static_cast<uint32_t>(block * Links::kRowsPerBlock);
-  for (uint32_t i = 0; i + 1 < rows.row_begin.size(); ++i)
-    visit(first + i, rows, rows.row_begin[i], rows.row_begin[i + 1]);
+float passed_on(float weight, uint32_t patch, std::span<const float> albedo) {
+  return weight * (albedo.empty() ? 1.0f : albedo[patch]);
 }
 
 // The strongest first.
@@ -49,13 +39,13 @@ std::vector<StrongLink> strong_links(const Links& links, std::span<const float> 
   parallel_for(links.blocks.size(), 1, [&](size_t begin, size_t end) {
     for (size_t b = begin; b < end; ++b) {
       std::vector<StrongLink>& strong = of_blocks[b];
-      visit_rows(links, b, [&](uint32_t row, const BlockRows& rows, uint32_t first, uint32_t last) {
-        for (uint32_t link = first; link < last; ++link) {
-          const float weight = passed_on(rows, link, albedo);
-          if (weight > kStrong && rows.patches[link] != row)
-            strong.push_back({weight, row, rows.patches[link]});
-        }
-      });
+      visit_rows(links, b,
+                 [&](uint32_t row, std::span<const uint32_t> patches, std::span<const float> weights) {
+                   for (size_t i = 0; i < patches.size(); ++i) {
+                     const float weight = passed_on(weights[i], patches[i], albedo);
+                     if (weight > kStrong && patches[i] != row) strong.push_back({weight, row, patches[i]});
+                   }
+                 });
       std::ranges::sort(strong, is_stronger);
       strong.resize(std::min<size_t>(strong.size(), links.blocks[b].rows));
       strong.shrink_to_fit();
@@ -149,18 +139,19 @@ void collect_entries(const Links& links, std::span<const float> albedo, std::spa
                      LinkGroups& groups) {
   parallel_for(links.blocks.size(), 1, [&](size_t begin, size_t end) {
     for (size_t b = begin; b < end; ++b)
-      visit_rows(links, b, [&](uint32_t row, const BlockRows& rows, uint32_t first, uint32_t last) {
-        if (group[row] == kNoGroup) return;
-        const std::span<const uint32_t> members = members_of(groups, group[row]);
-        const auto place = [&](uint32_t patch) {
-          return static_cast<size_t>(std::ranges::lower_bound(members, patch) - members.begin());
-        };
-        float* const of_row =
-            groups.inverse.data() + groups.first_entry[group[row]] + place(row) * members.size();
-        for (uint32_t link = first; link < last; ++link)
-          if (group[rows.patches[link]] == group[row])
-            of_row[place(rows.patches[link])] = passed_on(rows, link, albedo);
-      });
+      visit_rows(links, b,
+                 [&](uint32_t row, std::span<const uint32_t> patches, std::span<const float> weights) {
+                   if (group[row] == kNoGroup) return;
+                   const std::span<const uint32_t> members = members_of(groups, group[row]);
+                   const auto place = [&](uint32_t patch) {
+                     return static_cast<size_t>(std::ranges::lower_bound(members, patch) - members.begin());
+                   };
+                   float* const of_row =
+                       groups.inverse.data() + groups.first_entry[group[row]] + place(row) * members.size();
+                   for (size_t i = 0; i < patches.size(); ++i)
+                     if (group[patches[i]] == group[row])
+                       of_row[place(patches[i])] = passed_on(weights[i], patches[i], albedo);
+                 });
   });
 }
 

@@ -4,9 +4,9 @@
 // that count alike, and links read back) they stay what they are. Others are rounded by the largest
 // remainder; no weight is off by a quantum or more, and links that round to nothing are not stored. How fine:
 // the error of a row's light is about sum · √(links / 12) / T times the spread of the light it sees, T being
-// the sum of its multiples; with T = 300 · sum · √links that is 1/1000 of the spread in every row, and 10⁻⁵ to
-// 10⁻⁴ of π in a bake's totals (measured, tests/bench/coding_bench.cpp). T is 12 to 64 for each link, but at
-// least 4096 in rows with a weight above ½.
+// the sum of its multiples; with T = 300 · sum · √links that is 1/1000 of the spread in every row, and 10⁻⁵
+// to 10⁻⁴ of π in a bake's totals (measured, tests/bench/coding_bench.cpp). T is 12 to 64 for each link, but
+// at least 4096 in rows with a weight above ½.
 //
 // What is kept of the weights' size is the sum of every row, in 24 bits: the quantum is that sum over T, so
 // that no energy comes or goes whatever the multiples are. Rows whose sum is less than half of its last bit
@@ -115,6 +115,19 @@ struct BlockRows {
   std::vector<float> weights;
 };
 void unpack_block(const LinkBlock& block, BlockRows& rows);
+
+// Calls visit(row, its patches, their weights) for the rows of block `index`, ascending.
+template <class Visit>
+void visit_rows(const Links& links, size_t index, const Visit& visit) {
+  BlockRows rows;
+  unpack_block(links.blocks[index], rows);
+  for (size_t i = 0; i + 1 < rows.row_begin.size(); ++i) {
+    const size_t begin = rows.row_begin[i], count = rows.row_begin[i + 1] - begin;
+    visit(static_cast<uint32_t>(index * Links::kRowsPerBlock + i),
+          std::span<const uint32_t>(rows.patches).subspan(begin, count),
+          std::span<const float>(rows.weights).subspan(begin, count));
+  }
+}
 
 // out[i] = Σ_j w_ij · values[j], values rounded to float, products and sums in double: the same numbers on
 // every machine and at any thread count. values: one per column; out: one per row.
