@@ -29,7 +29,7 @@ constexpr int kTexelHits = kHitsPerSlice, kNodeHits = 3;
 
 // Packets walked together: with links, what they meet stays in the cache; without, more packets follow the
 // same path.
-constexpr size_t kNodePacketsTogether = 64, kTexelPacketsTogether = 512, kTexelPacketsWithLinks = 16;
+constexpr size_t kNodePacketsTogether = 64, kTexelPacketsTogether = 1024, kTexelPacketsWithLinks = 16;
 
 // Less than this share of the light blocked counts as none: a tenth of what a horizon may be off by.
 constexpr double kLeastBlocked = 1e-5;

@@ -15,7 +15,7 @@ constexpr uint64_t kTurn = 0x511ce08, kNodeShift = 0x511ce02;
 // Paths of a family: azimuths times rotations. With fewer azimuths more rotations, so that all receivers
 // together see the whole circle; with more rotations fewer packets share a path. The families of nodes are
 // rotated apart.
-constexpr int kTexelPaths = 512, kNodePaths = 32;
+constexpr int kTexelPaths = 256, kNodePaths = 32;
 // Segments kept ready in a family, about 530 bytes each. There is one family of texels and 30 of nodes.
 constexpr int kReadyTexelSegments = 16384, kReadyNodeSegments = 1024;
 

@@ -9,12 +9,19 @@ namespace {
 
 constexpr size_t kRowsPerPiece = 16;
 
-// A quarter of a window's size: windows lose little by it and fit the caches. The larger windows lie far from
-// a receiver, and only as one for all its packet's lanes do those of one place after another still fit.
-constexpr int kRowShift[kSkipLevels] = {1, 3, 3, 5};
-constexpr int kColumnShift[kSkipLevels] = {0, 3, 3, 5};
+// A quarter to a half of a window's size: windows lose little by it and fit the caches. The larger windows
+// lie far from a receiver, and only as one for all its packet's lanes do those of one place after another
+// still fit.
+constexpr int kRowShift[kSkipLevels] = {2, 3, 4, 5};
+constexpr int kColumnShift[kSkipLevels] = {0, 3, 4, 5};
 
-int window_size(int level) { return kSegmentCells * kSkipSegments[level] + 2; }
+constexpr int kStripShift = 7;  // the fewer columns, the fewer pages and the more overlap
+
+constexpr int window_size(int level) { return kSegmentCells * kSkipSegments[level] + 2; }
+
+// From the first corner of a packet's nearest window to the right: a crossing may round to one texel before
+// it.
+constexpr int kReach = window_size(0) + 2 + kSliceLanes;
 
 HeightPlane margined_heights(const Surface& surface, bool wrap) {
   const int width = surface.width(), height = surface.height();
@@ -23,7 +30,7 @@ HeightPlane margined_heights(const Surface& surface, bool wrap) {
   HeightPlane plane;
   plane.margin_left = 1 + widest + (wrap ? 0 : kSliceLanes);
   plane.margin_above = 1 + widest;
-  const int right = window_size(0) + 1 + kSliceLanes, below = window_size(0) + 1;
+  const int right = kReach, below = window_size(0) + 2;
   const int columns = plane.margin_left + width + right, rows = plane.margin_above + height + below;
   plane.pitch = static_cast<size_t>(columns);
   plane.values.resize(plane.pitch * static_cast<size_t>(rows));
@@ -42,13 +49,13 @@ HeightPlane margined_heights(const Surface& surface, bool wrap) {
   return plane;
 }
 
-// Widens the window of every place of `plane` by `step` texels to the right and downwards.
-void widen(const SliceField& field, int step, HeightPlane& plane) {
+// Widens the window of every place of `plane` by `step` texels to the right and downwards. wide: scratch.
+void widen(const SliceField& field, int step, HeightPlane& plane, LargePageVector<float>& wide) {
   const size_t pitch = plane.pitch, rows = plane.values.size() / pitch, s = static_cast<size_t>(step);
   // Beyond the margin a wrapping map starts again (its margins on the left and above are 1); an open one has
   // nothing.
   const auto wrapped = [](size_t i, int period) { return (i - 1) % static_cast<size_t>(period) + 1; };
-  std::vector<float> wide(plane.values.size());
+  wide.resize(plane.values.size());
   parallel_for(rows, kRowsPerPiece, [&](size_t begin, size_t end) {
     for (size_t y = begin; y < end; ++y) {
       const float* from = plane.values.data() + y * pitch;
@@ -98,6 +105,30 @@ HeightPlane merge(const HeightPlane& plane, int row_shift, int column_shift) {
   return merged;
 }
 
+HeightPlane cut_into_strips(const HeightPlane& plane) {
+  // Of a narrow map, all of it.
+  const size_t width = size_t{1} << kStripShift, pitch = std::min(width + kReach, plane.pitch);
+  const size_t rows = plane.values.size() / plane.pitch, strips = (plane.pitch + width - 1) / width;
+  HeightPlane cut;
+  cut.pitch = pitch;
+  cut.strip_size = rows * pitch;
+  cut.strip_shift = kStripShift;
+  cut.margin_left = plane.margin_left;
+  cut.margin_above = plane.margin_above;
+  cut.row_shift = plane.row_shift;
+  cut.values.resize(strips * cut.strip_size);
+  parallel_for(rows, kRowsPerPiece, [&](size_t begin, size_t end) {
+    for (size_t row = begin; row < end; ++row)
+      for (size_t strip = 0; strip < strips; ++strip) {
+        const size_t first = strip * width, there = std::min(pitch, plane.pitch - first);
+        float* to = cut.values.data() + strip * cut.strip_size + row * pitch;
+        std::copy_n(plane.values.data() + row * plane.pitch + first, there, to);
+        std::fill(to + there, to + pitch, kNoHeight);  // nobody reads it
+      }
+  });
+  return cut;
+}
+
 }  // namespace
 
 SliceField make_slice_field(const Surface& surface) {
@@ -107,19 +138,20 @@ SliceField make_slice_field(const Surface& surface) {
   field.inverse_width = 1.0 / field.width;
   field.inverse_height = 1.0 / field.height;
   field.wrap = surface.edge == Edge::kWrap;
-  field.heights = margined_heights(surface, field.wrap);
-  field.top = *std::max_element(field.heights.values.begin(), field.heights.values.end());
-
-  HeightPlane plane = field.heights;
+  HeightPlane plane = margined_heights(surface, field.wrap);
+  field.top = *std::max_element(plane.values.begin(), plane.values.end());
+  field.heights = cut_into_strips(plane);
+  LargePageVector<float> wide;
   int size = 1;
   for (size_t level = 0; level < kSkipLevels; ++level) {
     for (const int wanted = window_size(static_cast<int>(level)); size < wanted;) {
       const int step = std::min(size, wanted - size);
-      widen(field, step, plane);
+      widen(field, step, plane, wide);
       size += step;
     }
     field.tallest[level] = merge(plane, kRowShift[level], kColumnShift[level]);
   }
+  field.tallest[0] = cut_into_strips(field.tallest[0]);
   return field;
 }
 

@@ -4,8 +4,8 @@
 
 #include <array>
 #include <cstddef>
-#include <vector>
 
+#include "core/large_pages.h"
 #include "surface/surface.h"
 
 namespace hemibake {
@@ -20,17 +20,21 @@ inline constexpr int kFarSegments = 8;  // from here on the second level, small 
 // Height of nothing: lower than every slope asks for, and differences of two of them stay finite.
 inline constexpr float kNoHeight = -1e30f;
 
-// Heights by place. The texel (x, y) stands at index(x, y).
+// Heights by place, in vertical strips: what lies along a path up or down the map is on few pages of memory.
+// Strips overlap by what a packet and a segment reach beyond one. The texel (x, y) stands at index(x, y).
 struct HeightPlane {
-  std::vector<float> values;
-  size_t pitch = 0;
+  LargePageVector<float> values;
+  size_t pitch = 0;       // from a row of a strip to the next
+  size_t strip_size = 0;  // from a strip to the next
+  int strip_shift = 30;   // strips are 2^strip_shift columns apart
   int margin_left = 0, margin_above = 0;
   int row_shift = 0;     // 2^row_shift rows of texels share a row of the plane
   int column_shift = 0;  // the same of columns
 
   size_t index(int x, int y) const {
-    return static_cast<size_t>((y + margin_above) >> row_shift) * pitch +
-           static_cast<size_t>((x + margin_left) >> column_shift);
+    const size_t column = static_cast<size_t>((x + margin_left) >> column_shift);
+    const size_t row = static_cast<size_t>((y + margin_above) >> row_shift);
+    return (column >> strip_shift) * strip_size + row * pitch + (column & ((size_t{1} << strip_shift) - 1));
   }
   const float* at(int x, int y) const { return values.data() + index(x, y); }
 };

@@ -1,5 +1,7 @@
 #include "tracers/slice_walk.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -25,6 +27,9 @@ constexpr float kHorizonTolerance = 1e-4f;
 constexpr float kLinkTolerance = 1e-3f;
 // Longer sides of the map after which a walk ends in any case.
 constexpr double kFarthestMaps = 1e4;
+// From here on the heights of a segment are seldom in the nearest cache.
+constexpr int kColdSegments = 16;
+
 // i modulo n for i not far from 0..n-1.
 inline int wrap_near(int i, int n) {
   if (i < 0) i += n;
@@ -58,7 +63,6 @@ class PathWalk {
   void walk(const SlicePacket& packet, uint32_t azimuth, PacketView& view) {
     const SlicePath& path = segments_.path();
     Lanes lanes = start(packet);
-    add_sky(lanes.rim, path.direction, view.hemisphere);
     for (int segment = 0;;) {
       if (!reaches_map(packet, segment) || segment > last_segment_) break;
       if (segment > 0) {
@@ -94,6 +98,7 @@ class PathWalk {
   void find_hits(const SlicePacket& packet, uint32_t azimuth, Lanes& lanes, PacketView& view);
   bool nothing_left(const Lanes& lanes, int segment) const;
   void meet_hits(const SlicePacket& packet, int segment, Lanes& lanes, PacketView& view);
+  void fetch_window(const float* heights) const;
   template <class Meet>
   void cross_segment(const SlicePacket& packet, int segment, const Lanes& lanes, const Meet& meet);
   uint32_t facet_at(glm::ivec2 corner, const FacetBefore& facet, int lane) const;
@@ -195,6 +200,14 @@ HWY_INLINE V height_at(const Crossing& crossing, const float* heights, size_t pa
   return hn::Add(hn::Sub(a, lanes.base.part[part]), along_edge);
 }
 
+// Asks for the heights of a segment's window at once.
+HWY_INLINE void PathWalk::fetch_window(const float* heights) const {
+  for (size_t row = 0; row < kSegmentCells + 2; ++row) {
+    hwy::Prefetch(heights + row * field_.heights.pitch);
+    hwy::Prefetch(heights + row * field_.heights.pitch + kSliceLanes);
+  }
+}
+
 // Calls meet(part, slope, corner, crossing, facet before it) for every crossing of a segment but its first,
 // by distance. The first one's are right before them in memory.
 template <class Meet>
@@ -202,6 +215,7 @@ HWY_INLINE void PathWalk::cross_segment(const SlicePacket& packet, int segment, 
                                         const Meet& meet) {
   const glm::ivec2 corner = place(packet, segments_.corner(segment, 0));
   const float* heights = field_.heights.at(corner.x, corner.y);
+  if (segment >= kColdSegments) fetch_window(heights);
   const SegmentView crossed = segments_.crossings(segment);
   for (size_t i = 1; i < crossed.crossings.size(); ++i) {
     const Crossing& crossing = crossed.crossings[i];
@@ -342,6 +356,14 @@ HWY_INLINE uint32_t PathWalk::facet_at(glm::ivec2 corner, const FacetBefore& fac
   return 2 * cell + (facet.half ? 1 : 0);
 }
 
+// What a packet would see along all azimuths of its turn with nothing in the way.
+void add_hemisphere(const SlicePaths& paths, const SlicePacket& packet, SliceSums& hemisphere) {
+  for (int azimuth = 0; azimuth < paths.azimuths; ++azimuth) {
+    const glm::dvec2& direction = paths.paths[paths.path_index(packet.turn, azimuth)].direction;
+    add_sky(along(packet.rim_x, packet.rim_y, direction.x, direction.y), direction, hemisphere);
+  }
+}
+
 template <WalkFor kWhat>
 void walk_all(const SliceField& field, const SlicePaths& paths, const WalkOptions& options,
               std::span<const SlicePacket> packets, std::span<PacketView> views) {
@@ -350,6 +372,7 @@ void walk_all(const SliceField& field, const SlicePaths& paths, const WalkOption
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](size_t a, size_t b) { return packets[a].turn < packets[b].turn; });
+  for (size_t i = 0; i < packets.size(); ++i) add_hemisphere(paths, packets[i], views[i].hemisphere);
   PathWalk walk(field, paths, options);
   for (int azimuth = 0; azimuth < paths.azimuths; ++azimuth) {
     int turn = -1;

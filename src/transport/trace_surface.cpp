@@ -13,8 +13,9 @@
 namespace hemibake {
 namespace {
 
-// Without links texels are traced in tiles of this size: what a tile's receivers meet stays in the cache.
-constexpr uint32_t kTileWidth = 128, kTileHeight = 64;
+// Without links texels are traced in tiles: what a tile's receivers meet stays in the cache. They are as high
+// as leaves every thread enough to do.
+constexpr uint32_t kTileWidth = 128, kHighestTile = 128, kLowestTile = 16, kTilesPerThread = 4;
 
 // Blocks of patches are traced together, as many as leave every thread enough to do: the same node of many
 // facets sees along the same paths.
@@ -63,18 +64,27 @@ TracerCounts trace_blocks(uint32_t row_count, uint32_t together, Links& links, P
   return sum(counts);
 }
 
+uint32_t height_of_tiles(uint32_t columns, uint32_t height) {
+  const uint32_t wanted = kTilesPerThread * static_cast<uint32_t>(thread_count());
+  uint32_t tile_height = kHighestTile;
+  while (tile_height > kLowestTile && columns * ((height + tile_height - 1) / tile_height) < wanted)
+    tile_height /= 2;
+  return tile_height;
+}
+
 // Traces every texel tile by tile; store(texel, row) keeps what the caller wants of each.
 template <class Store>
 TracerCounts trace_tiles(const Tracer& tracer, uint32_t width, uint32_t height, Progress& progress,
                          const Store& store) {
   const uint32_t columns = (width + kTileWidth - 1) / kTileWidth;
-  const uint32_t rows_of_tiles = (height + kTileHeight - 1) / kTileHeight;
+  const uint32_t tile_height = height_of_tiles(columns, height);
+  const uint32_t rows_of_tiles = (height + tile_height - 1) / tile_height;
   std::vector<TracerCounts> counts(size_t{columns} * rows_of_tiles);
   parallel_for(counts.size(), 1, [&](size_t first, size_t last) {
-    std::vector<Row> rows(kTileWidth * kTileHeight);
+    std::vector<Row> rows(kTileWidth * tile_height);
     for (size_t t = first; t < last; ++t) {
       TexelTile tile{static_cast<uint32_t>(t % columns) * kTileWidth,
-                     static_cast<uint32_t>(t / columns) * kTileHeight, kTileWidth, kTileHeight};
+                     static_cast<uint32_t>(t / columns) * tile_height, kTileWidth, tile_height};
       tile.width = std::min(tile.width, width - tile.x);
       tile.height = std::min(tile.height, height - tile.y);
       tracer.trace_tile(width, tile, {rows.data(), size_t{tile.width} * tile.height}, counts[t]);
