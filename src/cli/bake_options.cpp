@@ -13,6 +13,8 @@
 namespace hemibake {
 namespace {
 
+// Azimuths and rays that serve most maps: README.
+constexpr int kDefaultAzimuths = 64, kDefaultRays = 256;
 constexpr int kMaxRays = 1 << 20;
 constexpr int kMaxStoredBounces = 1000;
 constexpr int kMaxBounces = 1000000;
@@ -67,13 +69,13 @@ void add_surface_options(CLI::App& app, BakeOptions& options) {
 void add_bake_options(CLI::App& app, BakeOptions& options) {
   add_surface_options(app, options);
   app.add_option("--tracer", options.tracer,
-                 "how visibility is found: rays with Embree, vertical slices, or the texel march of 2018")
+                 "how visibility is found: vertical slices (default), rays with Embree (default with --cone, "
+                 "--directions or over 65536 --rays, which slices do not have), or the texel march of 2018")
       ->check(CLI::IsMember({"embree", "march", "slice"}))
-      ->capture_default_str()
       ->group("Tracing");
-  app.add_option("--rays", options.rays, "rays per texel and per patch; azimuths with --tracer slice")
+  app.add_option("--rays", options.rays,
+                 "azimuths of slices per texel (default 64), or rays per texel and per patch (default 256)")
       ->check(whole_number_in(1, kMaxRays))
-      ->capture_default_str()
       ->group("Tracing");
   app.add_option("--cone", options.cone_degrees,
                  "full aperture of the texels' rays about the normal, degrees")
@@ -81,9 +83,8 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->capture_default_str()
       ->group("Tracing");
   app.add_option("--directions", options.directions,
-                 "spread of the texels' rays: equal solid angles, or equal shares of irradiance")
+                 "spread of the texels' rays: equal solid angles (default), or equal shares of irradiance")
       ->check(CLI::IsMember({"uniform", "cosine"}))
-      ->capture_default_str()
       ->group("Tracing");
   app.add_option("--max-distance", options.max_distance_m,
                  "hits further along the ray count as sky, m; default: no limit")
@@ -222,6 +223,13 @@ void apply_published_preset(const CLI::App& app, BakeOptions& options) {
 
 void settle_bake_options(const CLI::App& app, BakeOptions& options) {
   if (options.preset == "published") apply_published_preset(app, options);
+  if (options.tracer.empty()) {
+    const bool asks_for_rays =
+        options.cone_degrees < 180 || !options.directions.empty() || options.rays > kMaxAzimuths;
+    options.tracer = asks_for_rays ? "embree" : "slice";
+  }
+  if (options.directions.empty()) options.directions = "uniform";
+  if (options.rays == 0) options.rays = options.tracer == "slice" ? kDefaultAzimuths : kDefaultRays;
   if (options.patches.empty()) options.patches = options.tracer == "march" ? "texels" : "facets";
 
   if (options.target_error) {
@@ -273,7 +281,7 @@ RayOptions ray_options(const BakeOptions& options) {
   rays.rays = options.rays;
   rays.cone_degrees = options.cone_degrees;
   if (options.max_distance_m) rays.max_distance_m = *options.max_distance_m;
-  rays.directions = options.directions == "uniform" ? DirectionSet::kUniform : DirectionSet::kCosine;
+  rays.directions = options.directions == "cosine" ? DirectionSet::kCosine : DirectionSet::kUniform;
   rays.patches = patches_of(options);
   rays.texel_links = options.texel_links == "nearest" ? TexelLinks::kNearest : TexelLinks::kBilinear;
   rays.seed = options.seed;

@@ -30,11 +30,11 @@ struct BakeOptions {
   std::string normal_y;                  // "up", "down"; required with a normal map
   std::string normals_from = "heights";  // "heights", "faces"
   std::string edge = "wrap";
-  std::string tracer = "embree";
-  int rays = 256;
+  std::string tracer;  // empty: slice, or embree where another option asks for rays
+  int rays = 0;        // 0: what serves most maps
   double cone_degrees = 180;
-  std::string directions = "uniform";
-  std::string patches;  // empty: what the tracer has (facets, where it has both)
+  std::string directions;  // empty: uniform
+  std::string patches;     // empty: what the tracer has (facets, where it has both)
   std::string texel_links = "bilinear";
   std::optional<double> max_distance_m;
   std::optional<double> target_error;  // chooses rays and bounces
@@ -67,8 +67,8 @@ void add_surface_options(CLI::App& app, BakeOptions& options);
 void add_bake_options(CLI::App& app, BakeOptions& options);
 
 // Fills in what follows from other options: the preset (where its options were not given on the command line
-// of `app`) and the tracer's patches. Then what no single option can know: throws InputError for combinations
-// that make no sense.
+// of `app`), the tracer, its rays and its patches. Then what no single option can know: throws InputError for
+// combinations that make no sense.
 void settle_bake_options(const CLI::App& app, BakeOptions& options);
 
 // Fails before the work where `output` cannot be written, or is what the bake reads. suffixes: see

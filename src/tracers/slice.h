@@ -21,10 +21,10 @@
 // Nodes take each azimuth from another low-discrepancy point of the small copy of the facet they look from.
 // Starts are not lifted: a row is the limit of Embree's for a lift of zero.
 //
-// A wrapping map is followed until nothing can rise more than 10⁻⁴ (as a slope) above the horizon found, at
-// most for 10⁴ times its longer side. What is left above the horizon counts as sky, and the azimuth in
-// TracerCounts::cut_short where the highest texel could still be met. So α and E₀/π are off by at most 10⁻⁴;
-// measured on WallHeight, where a sixtieth of the azimuths end so: 1.6·10⁻⁵ in the worst texel, rms 2·10⁻⁷.
+// A wrapping map is followed until nothing can rise more than 10⁻⁴ (as a slope) above the horizon found, and
+// what is left above it counts as sky. So α and E₀/π are off by at most 10⁻⁴; measured on WallHeight, where a
+// sixtieth of the azimuths end so: 1.6·10⁻⁵ in the worst texel, rms 2·10⁻⁷. Azimuths followed for 10⁴ times
+// the map's longer side end there, and count in TracerCounts::cut_short.
 // Below a slope of zero a wrapping map blocks everything; its links stop at a slope of −10⁻³, and the largest
 // one gets the rest. Open edges: what leaves the map's rectangle meets nothing.
 #pragma once

@@ -64,12 +64,13 @@ class PathWalk {
     const SlicePath& path = segments_.path();
     Lanes lanes = start(packet);
     for (int segment = 0;;) {
-      if (!reaches_map(packet, segment) || segment > last_segment_) break;
+      if (!reaches_map(packet, segment)) break;
+      if (segment > last_segment_) {
+        if (blocks_below_) count_cut_short(lanes, segment, view);
+        break;
+      }
       if (segment > 0) {
-        if (ended(lanes, segment)) {
-          count_cut_short(lanes, segment, view);
-          break;
-        }
+        if (ended(lanes, segment)) break;
         const int skipped = segments_to_skip(packet, lanes, segment);
         segment += skipped;
         if (skipped > 0) continue;

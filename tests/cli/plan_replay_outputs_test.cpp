@@ -57,7 +57,8 @@ TEST_F(Plan, LinksThatDoNotFitGoToAFile) {
 
 class Replay : public CliTest {
  protected:
-  void expect_consistent(const std::string& options) const {
+  // rounding: of the sums of weights.
+  void expect_consistent(const std::string& options, double rounding) const {
     run_well("bake map.exr -o bake.exr " + options);
     const Bake bake = read_bake(folder_ / "bake.exr").bake;
     for (const auto& [x, y] : {std::pair{0, 0}, {31, 23}, {13, 7}}) {
@@ -73,11 +74,10 @@ class Replay : public CliTest {
       }
       for (const auto& link : texel.at("links")) links += link.at("weight").get<double>();
       const double direct = texel.at("direct_over_pi"), ao = texel.at("ao");
-      // Sums of 64 doubles, and of floats for the links.
-      EXPECT_NEAR(cosine_sum, 1, 1e-12);
-      EXPECT_NEAR(uniform_sum, 1, 1e-12);
-      EXPECT_NEAR(direct, sky, 1e-12);
-      EXPECT_NEAR(ao, uniform_sky, 1e-12);
+      EXPECT_NEAR(cosine_sum, 1, rounding);
+      EXPECT_NEAR(uniform_sum, 1, rounding);
+      EXPECT_NEAR(direct, sky, rounding);
+      EXPECT_NEAR(ao, uniform_sky, rounding);
       EXPECT_NEAR(links, 1 - sky, 1e-6);
       // The planes hold the same as floats.
       EXPECT_EQ(static_cast<float>(ao), bake.visible_fraction(x, y));
@@ -88,8 +88,30 @@ class Replay : public CliTest {
 
 TEST_F(Replay, IsTheBakedTexel) {
   write_map("map.exr", SyntheticKind::kBricks, 32, 24);
-  expect_consistent("--rays 64");
-  expect_consistent("--rays 64 --patches texels --edge open --directions cosine --cone 170 --seed 9");
+  // Weights of rays are doubles, those of slices differences of floats.
+  expect_consistent("--tracer embree --rays 64", 1e-12);
+  expect_consistent("--rays 64 --patches texels --edge open --directions cosine --cone 170 --seed 9", 1e-12);
+  expect_consistent("--rays 64", 1e-6);
+}
+
+class DefaultTracer : public CliTest {};
+
+TEST_F(DefaultTracer, IsSlicesUnlessRaysAreAskedFor) {
+  write_map("map.exr", SyntheticKind::kShapes, 8, 8);
+  const auto expect = [&](const std::string& options, const std::string& tracer, int rays) {
+    run_well("bake map.exr -o bake.exr --bounces 0 --outputs ao " + options);
+    const Provenance made = read_bake(folder_ / "bake.exr").provenance;
+    EXPECT_EQ(made.at("tracer").get<std::string>(), tracer) << options;
+    EXPECT_EQ(made.at("rays").get<int>(), rays) << options;
+  };
+  expect("", "slice", 64);
+  expect("--rays 16", "slice", 16);
+  expect("--tracer embree", "embree", 256);
+  expect("--tracer march", "march", 256);
+  expect("--cone 90", "embree", 256);
+  expect("--directions uniform", "embree", 256);
+  expect("--rays 65537", "embree", 65537);
+  EXPECT_EQ(run_hemibake("bake map.exr -o bake.exr --tracer slice --cone 90").exit_code, 2);
 }
 
 class Outputs : public CliTest {
