@@ -70,7 +70,10 @@ std::unique_ptr<Tracer> make_tracer(const BakeOptions& options, const BakeMap& m
 }
 
 size_t tracer_bytes(const BakeOptions& options, const Surface& surface) {
-  return options.tracer == "embree" ? embree_scene_bytes(surface) : size_t{8} * surface.texel_count();
+  if (options.tracer == "embree") return embree_scene_bytes(surface);
+  if (options.tracer == "slice")
+    return slice_tracer_bytes(surface, slice_options(options), options.needs_links());
+  return size_t{8} * surface.texel_count();
 }
 
 void record_map_options(const BakeOptions& options, Provenance& p) {

@@ -53,4 +53,7 @@ struct SliceOptions {
 // `surface` must outlive the tracer.
 std::unique_ptr<Tracer> make_slice_tracer(const Surface& surface, const SliceOptions& options);
 
+// Bytes that tracer will take, about: its heights, its paths, and what its threads collect.
+size_t slice_tracer_bytes(const Surface& surface, const SliceOptions& options, bool with_links);
+
 }  // namespace hemibake

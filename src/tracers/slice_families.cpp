@@ -16,8 +16,9 @@ constexpr uint64_t kTurn = 0x511ce08, kNodeShift = 0x511ce02;
 // together see the whole circle; with more rotations fewer packets share a path. The families of nodes are
 // rotated apart.
 constexpr int kTexelPaths = 256, kNodePaths = 32;
-// Segments kept ready in a family, about 530 bytes each. There is one family of texels and 30 of nodes.
+// Segments kept ready in a family. There is one family of texels and 30 of nodes.
 constexpr int kReadyTexelSegments = 16384, kReadyNodeSegments = 1024;
+constexpr size_t kBytesPerReadySegment = 560;  // about 22 crossings and their facets, and the corners
 
 // A node looks for links along some of its azimuths only. What it sees of the sky is the light of its patch,
 // and the few nodes next to a texel, most of all those at the corners there, make most of its first bounce;
@@ -94,6 +95,10 @@ SliceFamilies make_slice_families(int azimuths, Patches patches, uint64_t seed) 
     for (uint32_t node = 0; node < kFineNodes; ++node)
       families.nodes.push_back(make_node_paths(azimuths, seed, half, node));
   return families;
+}
+
+size_t ready_bytes(const SlicePaths& paths) {
+  return paths.paths.size() * static_cast<size_t>(paths.ready->per_path) * kBytesPerReadySegment;
 }
 
 size_t node_family(uint32_t half, uint32_t node) { return half * kFineNodes + node; }

@@ -17,6 +17,9 @@ struct SliceFamilies {
 // azimuths: of a texel. seed: which rotations, and where in their small copies of the facet nodes start.
 SliceFamilies make_slice_families(int azimuths, Patches patches, uint64_t seed);
 
+// Memory that a family's ready segments take, about, bytes.
+size_t ready_bytes(const SlicePaths& paths);
+
 // By half of the cell and node.
 size_t node_family(uint32_t half, uint32_t node);
 
