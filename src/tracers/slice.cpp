@@ -26,7 +26,7 @@ constexpr uint64_t kTexelTurn = 0x511ce01, kNodeTurn = 0x511ce03, kTexelPlace = 
 
 // Hits for links of a slice that holds the mean share of its receiver's hemisphere. Nodes take fewer: what a
 // texel gathers averages over many of them.
-constexpr int kTexelHits = kHitsPerSlice, kNodeHits = 3;
+constexpr double kTexelHits = kHitsPerSlice, kNodeHits = 1.5;
 
 // Packets walked together: with links, what they meet stays in the cache; without, more packets follow the
 // same path.
@@ -88,7 +88,7 @@ class SliceTracer final : public Tracer {
 
  private:
   int turn_of(const SlicePaths& paths, uint64_t stream, uint64_t place) const;
-  void choose_hits(int per_slice, uint64_t stream, uint64_t place, SlicePacket& packet) const;
+  void choose_hits(double per_slice, uint64_t stream, uint64_t place, SlicePacket& packet) const;
   SlicePacket texel_packet(int x, int y) const;
   SlicePacket node_packet(const NodeGroup& group) const;
   std::span<const PacketView> look(const SlicePaths& paths, WalkFor what,
@@ -122,7 +122,7 @@ int SliceTracer::turn_of(const SlicePaths& paths, uint64_t stream, uint64_t plac
 }
 
 // The mean over the azimuths of the weight of a receiver's slice is half the secant of its tilt.
-void SliceTracer::choose_hits(int per_slice, uint64_t stream, uint64_t place, SlicePacket& packet) const {
+void SliceTracer::choose_hits(double per_slice, uint64_t stream, uint64_t place, SlicePacket& packet) const {
   for (uint64_t lane = 0; lane < kSliceLanes; ++lane) {
     const double x = static_cast<double>(packet.rim_x[lane]), y = static_cast<double>(packet.rim_y[lane]);
     packet.hits_per_weight[lane] = static_cast<float>(2 * per_slice / std::sqrt(1 + x * x + y * y));
