@@ -26,9 +26,9 @@ void visit_packed(const BlockView& view, const Visit& visit) {
   const uint32_t most_weight = (1u << view.weight_bits) - 1;
   const uint32_t most_step = (1u << (LinkBlock::kCodeBits - view.weight_bits)) - 1;
   const uint16_t* code = view.codes;
-  for (uint32_t first = 0; first < view.rows; first += LinkBlock::kRowsInTurn) {
+  for (uint32_t first = 0; first < view.filled; first += LinkBlock::kRowsInTurn) {
     uint32_t column[LinkBlock::kRowsInTurn];
-    for (uint32_t i = 0; i < LinkBlock::kRowsInTurn && first + i < view.rows; ++i)
+    for (uint32_t i = 0; i < LinkBlock::kRowsInTurn && first + i < view.filled; ++i)
       column[i] = view.before_start(first + i);
     for (uint32_t k = 0; view.rows_as_long[k] > first; ++k) {
       const uint32_t turn = std::min(LinkBlock::kRowsInTurn, view.rows_as_long[k] - first);
@@ -101,11 +101,12 @@ BlockView view_block(const LinkBlock& block) {
   view.weight_bits = block.weight_bits;
   view.sum_unit = std::ldexp(1, block.sum_exponent);
   view.rows_as_long = reinterpret_cast<const uint16_t*>(packed_bytes(block));
+  view.filled = view.rows_as_long[0];
   view.codes = view.rows_as_long + block.longest + 1;
   view.sum_low = view.codes + block.codes;
-  view.sum_high = reinterpret_cast<const uint8_t*>(view.sum_low + block.rows);
-  view.row = view.sum_high + block.rows;
-  view.start = view.row + block.rows;
+  view.sum_high = reinterpret_cast<const uint8_t*>(view.sum_low + view.filled);
+  view.row = view.sum_high + view.filled;
+  view.start = view.row + view.filled;
   return view;
 }
 
@@ -127,7 +128,7 @@ void unpack_block(const LinkBlock& block, BlockRows& rows) {
     ++rows.row_begin[row + 1];
   });
   for (uint32_t r = 0; r < view.rows; ++r) rows.row_begin[r + 1] += rows.row_begin[r];
-  for (uint32_t place = 0; place < view.rows_as_long[0]; ++place)
+  for (uint32_t place = 0; place < view.filled; ++place)
     quanta[view.row[place]] = view.sum(place) / quanta[view.row[place]];
   rows.patches.assign(rows.row_begin.back(), 0);
   std::vector<double> multiples(rows.patches.size());
@@ -149,7 +150,7 @@ std::vector<double> row_sums(const Links& links) {
   parallel_for(links.blocks.size(), 1, [&](size_t first, size_t last) {
     for (size_t b = first; b < last; ++b) {
       const BlockView view = view_block(links.blocks[b]);
-      for (uint32_t place = 0; place < view.rows_as_long[0]; ++place)
+      for (uint32_t place = 0; place < view.filled; ++place)
         sums[b * Links::kRowsPerBlock + view.row[place]] = view.sum(place);
       close_view(links.blocks[b]);
     }

@@ -10,7 +10,7 @@
 //
 // What is kept of the weights' size is the sum of every row, in 24 bits: the quantum is that sum over T, so
 // that no energy comes or goes whatever the multiples are. Rows whose sum is less than half of its last bit
-// store nothing.
+// store nothing, and rows without links take no memory.
 //
 // A link is a code of 16 bits: the lowest `weight_bits` of its block hold the multiple, the others the step
 // from the row's column before, or from the column before its start: at least 1. A larger step takes a code
@@ -87,6 +87,7 @@ void finish_blocks(Links& links);  // all of them
 // A finished block wherever it lies. Place: of a row in the order of the block, by falling length.
 struct BlockView {
   uint32_t rows;
+  uint32_t filled;  // rows that have links: they have the first places, and there are no more
   uint32_t base;
   int start_shift, weight_bits;
   double sum_unit;
@@ -94,12 +95,11 @@ struct BlockView {
   // Sixteen places after sixteen places, in each the first code of all, the second of all that have one, ….
   // Little-endian.
   const uint16_t* codes;
-  const uint16_t* sum_low;  // of every place: sum in units of `sum_unit`, less 1
+  const uint16_t* sum_low;  // of every place, [filled]: sum in units of `sum_unit`, less 1
   const uint8_t* sum_high;
   const uint8_t* row;    // of every place
   const uint8_t* start;  // of every place: column (start << start_shift) + base
 
-  // Of a row that has links.
   double sum(uint32_t place) const { return ((sum_high[place] << 16 | sum_low[place]) + 1) * sum_unit; }
   // The column before the first one a row may lead to; wraps around below 0.
   uint32_t before_start(uint32_t place) const { return base + (uint32_t{start[place]} << start_shift) - 1; }

@@ -34,10 +34,11 @@ void gather_block(const BlockView& block, const float* HWY_RESTRICT values, doub
   const uint16_t* HWY_RESTRICT code = block.codes;
   const uint32_t most_weight = (1u << block.weight_bits) - 1;
   const uint32_t most_step = (1u << (LinkBlock::kCodeBits - block.weight_bits)) - 1;
-  for (uint32_t first = 0; first < block.rows; first += kTurn) {
+  std::fill(out, out + block.rows, 0.0);
+  for (uint32_t first = 0; first < block.filled; first += kTurn) {
     uint32_t column[kTurn] = {}, total[kTurn] = {};
     double sum[kTurn] = {};
-    const uint32_t places = std::min(kTurn, block.rows - first);
+    const uint32_t places = std::min(kTurn, block.filled - first);
     for (uint32_t i = 0; i < places; ++i) column[i] = block.before_start(first + i);
     for (uint32_t k = 0; block.rows_as_long[k] > first; ++k) {
       const uint32_t turn = std::min(kTurn, block.rows_as_long[k] - first);
@@ -97,7 +98,7 @@ class Decoder {
 
   // The next turns; false where there are none left.
   HWY_INLINE bool next(Turns& turns) {
-    if (first_ >= block_.rows) return false;
+    if (first_ >= block_.filled) return false;
     turns.first = first_;
     for (turns.count = 0; *as_long_ > first_ && turns.count < Turns::kMost; ++turns.count, ++as_long_) {
       const size_t turn = std::min<size_t>(kTurn, *as_long_ - first_);
@@ -122,7 +123,7 @@ class Decoder {
   void begin_group(uint32_t first) {
     first_ = first;
     as_long_ = block_.rows_as_long;
-    if (first >= block_.rows) return;
+    if (first >= block_.filled) return;
     for (size_t p = 0; p < kParts; ++p) {
       const U start =
           hn::PromoteTo(kU, hn::PromoteTo(kCode, hn::LoadU(kByte, block_.start + first + p * kWidth)));
@@ -190,7 +191,7 @@ class Sums {
   void end_group(const Turns& turns) {
     HWY_ALIGN double sums[kTurn];
     for (size_t p = 0; p < kSumParts; ++p) hn::Store(sums_[p], kD, sums + p * kSumWidth);
-    const uint32_t end = std::min(block_.rows, turns.first + kTurn);
+    const uint32_t end = std::min(block_.filled, turns.first + kTurn);
     for (uint32_t place = turns.first; place < end; ++place)
       out_[block_.row[place]] =
           sums[place - turns.first] * (block_.sum(place) / std::max(1u, turns.totals[place - turns.first]));
@@ -204,6 +205,7 @@ class Sums {
 };
 
 void gather_block(const BlockView& block, const float* HWY_RESTRICT values, double* HWY_RESTRICT out) {
+  std::fill(out, out + block.rows, 0.0);  // rows without links have no place
   Decoder decoder(block, values);
   Sums sums(block, values, out);
   Turns turns[2];

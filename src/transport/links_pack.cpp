@@ -235,12 +235,13 @@ void encode_rows(const OpenRows& open, LinkBlock& block, Rows& rows) {
   block.codes = static_cast<uint32_t>(rows.codes.size());
 }
 
-// Rows by falling number of codes.
+// Rows by falling number of codes; those without any are left out.
 void sort_rows(LinkBlock& block, Rows& rows) {
   rows.order.resize(block.rows);
   std::iota(rows.order.begin(), rows.order.end(), 0u);
   std::ranges::stable_sort(rows.order, std::greater{}, [&](uint32_t row) { return code_count(rows, row); });
-  block.longest = block.rows == 0 ? 0 : code_count(rows, rows.order[0]);
+  while (!rows.order.empty() && code_count(rows, rows.order.back()) == 0) rows.order.pop_back();
+  block.longest = rows.order.empty() ? 0 : code_count(rows, rows.order[0]);
 }
 
 template <class Number>
@@ -249,10 +250,10 @@ std::byte* write(std::byte* to, Number number) {
   return to + sizeof(Number);
 }
 
-std::byte* write_codes(const LinkBlock& block, const Rows& rows, std::byte* to) {
-  for (uint32_t first = 0; first < block.rows; first += LinkBlock::kRowsInTurn) {
+std::byte* write_codes(const Rows& rows, std::byte* to) {
+  for (size_t first = 0; first < rows.order.size(); first += LinkBlock::kRowsInTurn) {
     std::array<uint32_t, LinkBlock::kRowsInTurn> next{}, end{};
-    for (uint32_t i = 0; i < LinkBlock::kRowsInTurn && first + i < block.rows; ++i) {
+    for (uint32_t i = 0; i < LinkBlock::kRowsInTurn && first + i < rows.order.size(); ++i) {
       next[i] = begin_of(rows.code_ends, rows.order[first + i]);
       end[i] = rows.code_ends[rows.order[first + i]];
     }
@@ -266,15 +267,15 @@ std::byte* write_codes(const LinkBlock& block, const Rows& rows, std::byte* to) 
 // In the order of BlockView.
 void write_block(LinkBlock& block, const Rows& rows) {
   block.packed_bytes = (size_t{block.longest} + 1 + block.codes) * sizeof(uint16_t) +
-                       size_t{block.rows} * kBytesPerRow + LinkBlock::kPadding;
+                       rows.order.size() * kBytesPerRow + LinkBlock::kPadding;
   block.packed.resize(block.packed_bytes);
   std::byte* to = block.packed.data();
-  uint32_t longer = block.rows;
+  uint32_t longer = static_cast<uint32_t>(rows.order.size());
   for (uint32_t k = 0; k <= block.longest; ++k) {
     while (longer > 0 && code_count(rows, rows.order[longer - 1]) <= k) --longer;
     to = write(to, static_cast<uint16_t>(longer));
   }
-  to = write_codes(block, rows, to);
+  to = write_codes(rows, to);
   const auto sum_less_1 = [&](uint32_t row) {
     return static_cast<uint32_t>(std::max(rows.sums[row], 1.0)) - 1;
   };

@@ -346,6 +346,18 @@ TEST(Links, WrongLengthsAreABug) {
   EXPECT_THROW(gather(links, values, out), std::logic_error);
 }
 
+// Of a wide plain hardly a row has links.
+TEST(Links, EmptyRowsTakeNoMemory) {
+  Links links = make_links(Links::kRowsPerBlock, 9);
+  for (uint32_t i = 0; i < Links::kRowsPerBlock; ++i)
+    append_row(links.blocks[0], i == 77 ? std::vector<Link>{{8, 0.5f}} : std::vector<Link>{});
+  finish_blocks(links);
+  EXPECT_LT(links.stored_bytes(), sizeof(LinkBlock) + LinkBlock::kPadding + 16);
+  std::vector<double> out(Links::kRowsPerBlock, NAN);
+  gather(links, std::vector<double>(9, 1.0), out);
+  for (uint32_t i = 0; i < Links::kRowsPerBlock; ++i) EXPECT_EQ(out[i], i == 77 ? 0.5 : 0) << i;
+}
+
 TEST(Links, EmptyRowsAreFine) {
   Links links = make_links(2, 2);
   append_row(links.blocks[0], {});
