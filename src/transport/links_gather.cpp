@@ -3,15 +3,12 @@
 // asked for, and the values are fetched meanwhile: on smooth maps almost every link leads to a line of memory
 // of its own.
 #include <hwy/cache_control.h>
-#include <sys/mman.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
-#include <memory>
-#include <new>
 
 #include "core/error.h"
+#include "core/large_pages.h"
 #include "core/parallel.h"
 #include "transport/links.h"
 
@@ -233,20 +230,8 @@ constexpr size_t kGrain = 16384;
 // Blocks taken together: a block alone is some microseconds of work.
 constexpr size_t kBlocksPerTask = 8;
 
-struct Free {
-  void operator()(float* memory) const { std::free(memory); }
-};
-
-// Values as float, in few large pages where the system has them: links lead all over the values, and a page
-// for every 4 KiB of them would be looked up for almost every link.
-std::unique_ptr<float[], Free> as_float(std::span<const double> values) {
-  constexpr size_t kLargePage = size_t{2} << 20;
-  const size_t wanted = std::max<size_t>(1, values.size()) * sizeof(float);
-  const size_t bytes = wanted < kLargePage ? wanted : (wanted + kLargePage - 1) / kLargePage * kLargePage;
-  std::unique_ptr<float[], Free> rounded(
-      static_cast<float*>(bytes < kLargePage ? std::malloc(bytes) : std::aligned_alloc(kLargePage, bytes)));
-  if (!rounded) throw std::bad_alloc();
-  if (bytes >= kLargePage) madvise(rounded.get(), bytes, MADV_HUGEPAGE);
+LargePageVector<float> as_float(std::span<const double> values) {
+  LargePageVector<float> rounded(std::max<size_t>(1, values.size()));
   parallel_for(values.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) rounded[i] = static_cast<float>(values[i]);
   });
@@ -258,11 +243,11 @@ std::unique_ptr<float[], Free> as_float(std::span<const double> values) {
 void gather(const Links& links, std::span<const double> values, std::span<double> out) {
   expect_equal(values.size(), size_t{links.columns}, "values given to gather");
   expect_equal(out.size(), size_t{links.rows}, "results asked of gather");
-  const auto rounded = as_float(values);
+  const LargePageVector<float> rounded = as_float(values);
   parallel_for(links.blocks.size(), kBlocksPerTask, [&](size_t first, size_t last) {
     for (size_t b = first; b < last; ++b) {
       HWY_DYNAMIC_DISPATCH(gather_block)
-      (view_block(links.blocks[b]), rounded.get(), out.data() + b * Links::kRowsPerBlock);
+      (view_block(links.blocks[b]), rounded.data(), out.data() + b * Links::kRowsPerBlock);
       close_view(links.blocks[b]);
     }
   });
