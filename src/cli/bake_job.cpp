@@ -14,7 +14,7 @@
 #include "io/links_file.h"
 #include "transport/bounces.h"
 #include "transport/direct_light.h"
-#include "transport/spill_file.h"
+#include "transport/links/spill_file.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {

@@ -10,11 +10,11 @@
 #include "cli/bake_surface.h"
 #include "io/provenance.h"
 #include "tracers/tracer.h"
-#include "trade/target_error.h"
-#include "transport/bake.h"
-#include "transport/energy.h"
-#include "transport/error_estimate.h"
-#include "transport/plan.h"
+#include "bake/target_error.h"
+#include "transport/baked_planes.h"
+#include "bake/energy.h"
+#include "bake/error_estimate.h"
+#include "bake/plan.h"
 
 namespace hemibake {
 

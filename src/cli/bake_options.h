@@ -11,9 +11,9 @@
 
 #include "surface/filter.h"
 #include "surface/surface.h"
-#include "tracers/march.h"
+#include "tracers/march/march.h"
 #include "tracers/ray_options.h"
-#include "tracers/slice.h"
+#include "tracers/slice/slice.h"
 
 namespace CLI {
 class App;

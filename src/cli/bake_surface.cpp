@@ -9,9 +9,9 @@
 #include "io/image_io.h"
 #include "surface/filter.h"
 #include "surface/normals.h"
-#include "tracers/embree.h"
-#include "tracers/march.h"
-#include "tracers/slice.h"
+#include "tracers/embree/embree.h"
+#include "tracers/march/march.h"
+#include "tracers/slice/slice.h"
 
 namespace hemibake {
 namespace {

@@ -13,7 +13,7 @@
 #include "io/output_file.h"
 #include "model/check_model.h"
 #include "model/model.h"
-#include "transport/energy.h"
+#include "bake/energy.h"
 
 namespace hemibake {
 namespace {

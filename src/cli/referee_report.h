@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "transport/referee_check.h"
+#include "reference/comparison.h"
 
 namespace hemibake {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cli/common_options.h"
-#include "report/pictures.h"
-#include "report/sky.h"
+#include "pictures/pictures.h"
+#include "lighting/sky.h"
 
 namespace CLI {
 class App;

@@ -15,11 +15,11 @@
 #include "curves/curves.h"
 #include "fitting/models.h"
 #include "io/fit_file.h"
-#include "io/fitted_model.h"
+#include "fitting/fitted_model.h"
 #include "io/image_io.h"
 #include "io/table_io.h"
-#include "report/tone.h"
-#include "tracers/sky_light.h"
+#include "core/color.h"
+#include "lighting/sky_light.h"
 
 namespace hemibake {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "cli/render_options.h"
 #include "io/bake_file.h"
-#include "report/wall.h"
+#include "lighting/scene.h"
 
 namespace hemibake {
 

@@ -18,7 +18,7 @@
 #include "io/image_io.h"
 #include "io/output_file.h"
 #include "surface/surface.h"
-#include "surface/synthetic.h"
+#include "surface/synthetic/synthetic.h"
 
 namespace hemibake {
 namespace {

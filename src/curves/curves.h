@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "transport/bake.h"
+#include "transport/baked_planes.h"
 
 namespace hemibake {
 

@@ -1,6 +1,6 @@
 #include "fitting/bounded.h"
 
-#include "curves/closed_forms.h"
+#include "model/closed_forms.h"
 #include "fitting/least_squares.h"
 
 namespace hemibake {

@@ -1,4 +1,4 @@
-// Fits of the bounded model (curves/closed_forms.h): every parameter stays where the model is within 0..1 and
+// Fits of the bounded model (model/closed_forms.h): every parameter stays where the model is within 0..1 and
 // monotone.
 #pragma once
 

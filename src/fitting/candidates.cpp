@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "curves/closed_forms.h"
+#include "model/closed_forms.h"
 #include "fitting/bounded.h"
 #include "fitting/least_squares.h"
 #include "fitting/published.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "curves/closed_forms.h"
+#include "model/closed_forms.h"
 #include "fitting/least_squares.h"
 
 namespace hemibake {

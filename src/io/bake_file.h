@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "io/provenance.h"
-#include "transport/bake.h"
+#include "transport/baked_planes.h"
 
 namespace hemibake {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "io/provenance.h"
-#include "transport/links.h"
+#include "transport/links/form_factors.h"
 
 namespace hemibake {
 
@@ -32,7 +32,7 @@ void write_links(const std::filesystem::path& path, const Links& gather, const L
                  std::span<const float> direct, const Provenance& provenance);
 
 // The links packed again: rows that were packed before stay as they are to 10⁻⁴ of their quantum
-// (transport/links.h); few that lost links to it, and others, are rounded, their sum kept. Throws
+// (transport/links/form_factors.h); few that lost links to it, and others, are rounded, their sum kept. Throws
 // InputError naming the file where it is not a whole links file, a row begins before the one before it, its
 // columns do not ascend or are beyond the matrix, or a value is not finite or a weight below 0.
 LinksFile read_links(const std::filesystem::path& path);

@@ -1,6 +1,6 @@
 // The fitted models, evaluated in float or double as a shader would: irradiance relative to that of an open
 // surface (E/π under a sky of radiance 1), from ambient occlusion and albedo. Formulas:
-// curves/closed_forms.h.
+// model/closed_forms.h.
 //
 // Every model gives, for ao = α and albedo = ρ in 0..1, ends included:
 //   direct(α)        F₀, the light that comes straight from the sky
@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <array>
 
-#include "curves/closed_forms.h"
+#include "model/closed_forms.h"
 
 namespace hemibake {
 

@@ -8,7 +8,7 @@
 #include "core/constants.h"
 #include "core/statistics.h"
 #include "fitting/candidates.h"
-#include "io/fitted_model.h"
+#include "fitting/fitted_model.h"
 #include "model/shader_text.h"
 
 namespace hemibake {

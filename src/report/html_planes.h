@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "transport/bake.h"
+#include "transport/baked_planes.h"
 
 namespace hemibake {
 

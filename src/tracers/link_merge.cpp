@@ -25,7 +25,7 @@ constexpr uint32_t kFree = 0xffffffff;
 // facet; in a deep fold most rays hit nearer.
 constexpr double kNear = 0.25;
 // What such a hit is worth is shared in whole parts: rows of hits that weigh alike are then stored as they
-// are (transport/links.h). With eighths a deep pit of WallHeight kept its light at 32 rays.
+// are (transport/links/form_factors.h). With eighths a deep pit of WallHeight kept its light at 32 rays.
 constexpr double kNearParts = 16;
 
 // Leaves each patch once, in order of its first link, weights summed in double in the order of the links. A

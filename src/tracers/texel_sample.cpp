@@ -6,7 +6,7 @@
 #include "core/confidence.h"
 #include "core/error.h"
 #include "core/statistics.h"
-#include "tracers/referee_random.h"
+#include "reference/random.h"
 
 namespace hemibake {
 namespace {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "tracers/referee.h"
+#include "reference/path_tracer.h"
 
 namespace hemibake {
 

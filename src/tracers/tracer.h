@@ -23,7 +23,7 @@ struct Link {
 };
 
 // What one receiver sees. Σ weights + direct_over_pi = 1 to rounding (with the march's published weights up
-// to 2, see tracers/march.h).
+// to 2, see tracers/march/march.h).
 struct Row {
   double visible_fraction = 0;  // α, uniform fraction of the hemisphere about the normal that is sky, 0..1
   double direct_over_pi = 0;    // E₀/π, cosine-weighted fraction, 0..1

@@ -1,9 +1,9 @@
 #include <memory>
 
 #include "surface/surface.h"
-#include "tracers/embree.h"
-#include "tracers/march.h"
-#include "tracers/slice.h"
+#include "tracers/embree/embree.h"
+#include "tracers/march/march.h"
+#include "tracers/slice/slice.h"
 #include "trade/ladder.h"
 #include "trade/resample.h"
 #include "transport/bounces.h"

@@ -6,12 +6,12 @@
 #include "core/constants.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
-#include "tracers/slice.h"
+#include "tracers/slice/slice.h"
 #include "trade/errors.h"
 #include "trade/resample.h"
 #include "transport/bounces.h"
-#include "transport/plan.h"
-#include "transport/referee_check.h"
+#include "bake/plan.h"
+#include "reference/comparison.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {

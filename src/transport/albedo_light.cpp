@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
-#include "transport/light_solver.h"
+#include "transport/solver/orthomin.h"
 
 namespace hemibake {
 namespace {

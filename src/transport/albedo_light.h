@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "transport/links.h"
+#include "transport/links/form_factors.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {

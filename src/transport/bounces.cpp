@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/statistics.h"
-#include "transport/light_solver.h"
+#include "transport/solver/orthomin.h"
 
 namespace hemibake {
 namespace {

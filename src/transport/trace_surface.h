@@ -7,7 +7,7 @@
 
 #include "core/grid.h"
 #include "tracers/tracer.h"
-#include "transport/links.h"
+#include "transport/links/form_factors.h"
 
 namespace hemibake {
 

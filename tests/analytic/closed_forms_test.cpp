@@ -13,8 +13,8 @@
 #include "support/patch_means.h"
 #include "surface/facets.h"
 #include "surface/normals.h"
-#include "surface/synthetic_analytic.h"
-#include "tracers/embree.h"
+#include "surface/synthetic/analytic.h"
+#include "tracers/embree/embree.h"
 #include "transport/bounces.h"
 #include "transport/trace_surface.h"
 

@@ -8,9 +8,9 @@
 #include "analytic/groove_reference.h"
 #include "analytic/spherical_pit.h"
 #include "core/constants.h"
-#include "surface/synthetic.h"
-#include "surface/synthetic_analytic.h"
-#include "tracers/referee.h"
+#include "surface/synthetic/synthetic.h"
+#include "surface/synthetic/analytic.h"
+#include "reference/path_tracer.h"
 #include "tracers/texel_sample.h"
 
 namespace hemibake {

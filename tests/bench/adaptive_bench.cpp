@@ -15,7 +15,7 @@
 
 #include "core/statistics.h"
 #include "support/maps.h"
-#include "tracers/embree.h"
+#include "tracers/embree/embree.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {

@@ -12,7 +12,7 @@
 
 namespace hemibake {
 
-constexpr int kMargin = 64;  // as in tracers/embree.cpp
+constexpr int kMargin = 64;  // as in tracers/embree/embree.cpp
 
 struct BareScene {
   RTCDevice device = rtcNewDevice("threads=1");

@@ -13,7 +13,7 @@
 
 #include "bench/bench_maps.h"
 #include "core/parallel.h"
-#include "tracers/slice.h"
+#include "tracers/slice/slice.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {

@@ -12,7 +12,7 @@
 
 #include "bench/named_maps.h"
 #include "core/parallel.h"
-#include "transport/links.h"
+#include "transport/links/form_factors.h"
 
 namespace hemibake {
 namespace {

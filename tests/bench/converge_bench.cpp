@@ -16,7 +16,7 @@
 
 #include "bench/named_maps.h"
 #include "core/parallel.h"
-#include "transport/light_solver.h"
+#include "transport/solver/orthomin.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {

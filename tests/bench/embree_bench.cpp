@@ -12,7 +12,7 @@
 #include "bench/bare_scene.h"
 #include "bench/bench_maps.h"
 #include "core/parallel.h"
-#include "tracers/embree.h"
+#include "tracers/embree/embree.h"
 #include "transport/bounces.h"
 
 namespace hemibake {

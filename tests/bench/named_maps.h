@@ -6,8 +6,8 @@
 
 #include "io/image_io.h"
 #include "support/maps.h"
-#include "tracers/embree.h"
-#include "tracers/slice.h"
+#include "tracers/embree/embree.h"
+#include "tracers/slice/slice.h"
 
 namespace hemibake {
 

@@ -13,7 +13,7 @@
 
 #include "bench/bench_maps.h"
 #include "core/constants.h"
-#include "tracers/embree.h"
+#include "tracers/embree/embree.h"
 #include "transport/bounces.h"
 #include "transport/trace_surface.h"
 

@@ -22,8 +22,8 @@
 #include "sampling/directions.h"
 #include "support/maps.h"
 #include "surface/frame.h"
-#include "tracers/embree.h"
-#include "tracers/slice.h"
+#include "tracers/embree/embree.h"
+#include "tracers/slice/slice.h"
 #include "transport/bounces.h"
 
 namespace hemibake {

@@ -22,10 +22,10 @@
 #include "core/constants.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
-#include "surface/noise.h"
-#include "tracers/embree.h"
-#include "tracers/march.h"
-#include "tracers/slice.h"
+#include "surface/synthetic/noise.h"
+#include "tracers/embree/embree.h"
+#include "tracers/march/march.h"
+#include "tracers/slice/slice.h"
 #include "transport/bounces.h"
 
 namespace hemibake {

@@ -9,11 +9,11 @@
 #include <cstdlib>
 
 #include "support/maps.h"
-#include "tracers/embree.h"
-#include "tracers/slice.h"
+#include "tracers/embree/embree.h"
+#include "tracers/slice/slice.h"
 #include "trade/reference.h"
 #include "trade/scored_run.h"
-#include "trade/target_error.h"
+#include "bake/target_error.h"
 #include "transport/bounces.h"
 
 namespace hemibake {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/constants.h"
-#include "curves/closed_forms.h"
+#include "model/closed_forms.h"
 #include "io/bake_file.h"
 #include "io/curves_file.h"
 #include "io/io_testing.h"

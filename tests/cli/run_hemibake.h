@@ -11,7 +11,7 @@
 
 #include "core/grid.h"
 #include "io/io_testing.h"
-#include "surface/synthetic.h"
+#include "surface/synthetic/synthetic.h"
 
 namespace hemibake {
 

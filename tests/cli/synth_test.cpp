@@ -8,7 +8,7 @@
 
 #include "cli/run_hemibake.h"
 #include "io/image_io.h"
-#include "surface/synthetic.h"
+#include "surface/synthetic/synthetic.h"
 
 namespace hemibake {
 namespace {

@@ -9,7 +9,7 @@
 #include "estimators/horizon.h"
 #include "support/maps.h"
 #include "surface/facets.h"
-#include "surface/synthetic_analytic.h"
+#include "surface/synthetic/analytic.h"
 
 namespace hemibake {
 namespace {

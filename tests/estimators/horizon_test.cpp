@@ -6,7 +6,7 @@
 
 #include "core/constants.h"
 #include "support/maps.h"
-#include "surface/synthetic_analytic.h"
+#include "surface/synthetic/analytic.h"
 
 namespace hemibake {
 namespace {

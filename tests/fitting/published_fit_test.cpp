@@ -6,7 +6,7 @@
 
 #include "core/constants.h"
 #include "core/error.h"
-#include "curves/closed_forms.h"
+#include "model/closed_forms.h"
 #include "fitting/fit.h"
 #include "fitting/published.h"
 

@@ -13,7 +13,7 @@
 #include "io/image_io.h"
 #include "surface/filter.h"
 #include "surface/normals.h"
-#include "tracers/march.h"
+#include "tracers/march/march.h"
 #include "transport/bounces.h"
 #include "transport/trace_surface.h"
 

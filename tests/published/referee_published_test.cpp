@@ -6,7 +6,7 @@
 
 #include "io/image_io.h"
 #include "surface/normals.h"
-#include "tracers/referee.h"
+#include "reference/path_tracer.h"
 #include "tracers/texel_sample.h"
 
 namespace hemibake {

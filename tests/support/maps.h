@@ -3,7 +3,7 @@
 
 #include "sampling/low_discrepancy.h"
 #include "surface/surface.h"
-#include "surface/synthetic.h"
+#include "surface/synthetic/synthetic.h"
 
 namespace hemibake {
 

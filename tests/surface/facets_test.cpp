@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "surface/noise.h"
+#include "surface/synthetic/noise.h"
 
 namespace hemibake {
 namespace {

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-#include "tracers/referee_random.h"
+#include "reference/random.h"
 
 namespace hemibake {
 namespace {

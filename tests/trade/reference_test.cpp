@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "support/maps.h"
-#include "tracers/slice.h"
+#include "tracers/slice/slice.h"
 #include "trade/errors.h"
 #include "transport/trace_surface.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 #include "support/maps.h"
-#include "tracers/slice.h"
+#include "tracers/slice/slice.h"
 #include "transport/bounces.h"
 
 namespace hemibake {

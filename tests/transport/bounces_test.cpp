@@ -9,7 +9,7 @@
 #include "core/statistics.h"
 #include "support/maps.h"
 #include "surface/facets.h"
-#include "tracers/embree.h"
+#include "tracers/embree/embree.h"
 
 namespace hemibake {
 namespace {

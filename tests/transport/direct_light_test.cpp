@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "support/maps.h"
-#include "tracers/slice.h"
+#include "tracers/slice/slice.h"
 
 namespace hemibake {
 namespace {

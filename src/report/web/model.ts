@@ -1,4 +1,4 @@
-// The models as functions, for plots, the probe and the picture without WebGL; formulas: src/curves/closed_forms.h.
+// The models as functions, for plots, the probe and the picture without WebGL; formulas: src/model/closed_forms.h.
 // Here in double precision; the picture's shader has the text that `hemibake export` writes.
 
 import { report, type ModelData } from './data';

@@ -1,0 +1,123 @@
+#include "lighting/relight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+
+#include "core/constants.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/statistics.h"
+#include "surface/facets.h"
+
+namespace hemibake {
+namespace {
+
+// The largest ratio a series is continued with: nothing is brighter for bounces after about the thousandth.
+constexpr double kLargestRatio = 0.999;
+
+// last · (q + q² + …), q = last/before, but no more than `albedo`, the most that any bounce sends on: in a
+// pit that light is still seeping into, one bounce may bring more than the one before, and all bounces
+// cannot.
+double rest_of_series(double before, double last, double albedo) {
+  if (!(before > 0 && last > 0)) return 0;
+  const double ratio = std::min({last / before, albedo, kLargestRatio});
+  return last * ratio / (1 - ratio);
+}
+
+// albedo: the largest on the wall, per channel.
+void add_up(Relit& relit, const glm::vec3& albedo, double most) {
+  const size_t count = relit.bounces.size();
+  const Grid<glm::vec3>& first = relit.bounces[0];
+  relit.total = Grid<glm::vec3>(first.width, first.height);
+  Moments rests;
+  for (size_t i = 0; i < first.size(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      double sum = 0;
+      for (const Grid<glm::vec3>& bounce : relit.bounces) sum += static_cast<double>(bounce[i][c]);
+      double rest = 0;
+      if (count >= 3)
+        rest = std::min(rest_of_series(static_cast<double>(relit.bounces[count - 2][i][c]),
+                                       static_cast<double>(relit.bounces[count - 1][i][c]),
+                                       static_cast<double>(albedo[c])),
+                        std::max(0.0, most - sum));
+      relit.total[i][c] = static_cast<float>(sum + rest);
+      rests.add(rest);
+      relit.largest_rest = std::max(relit.largest_rest, rest);
+    }
+  relit.mean_rest = rests.mean;
+}
+
+std::vector<double> channel(const std::vector<glm::dvec3>& light, int c) {
+  std::vector<double> values(light.size());
+  for (size_t i = 0; i < light.size(); ++i) values[i] = light[i][c];
+  return values;
+}
+
+void store_channel(const std::vector<double>& values, int c, Grid<glm::vec3>& grid) {
+  for (size_t i = 0; i < values.size(); ++i) grid[i][c] = static_cast<float>(values[i]);
+}
+
+}  // namespace
+
+Relit relight_constant(const std::vector<Grid<float>>& irradiance, const glm::vec3& albedo) {
+  Relit relit;
+  glm::dvec3 power(1);
+  for (const Grid<float>& at_albedo_1 : irradiance) {
+    Grid<glm::vec3> bounce(at_albedo_1.width, at_albedo_1.height);
+    for (size_t i = 0; i < bounce.size(); ++i)
+      bounce[i] = glm::vec3(power * static_cast<double>(at_albedo_1[i]));
+    relit.bounces.push_back(std::move(bounce));
+    power *= glm::dvec3(albedo);
+  }
+  add_up(relit, albedo, kPi);
+  return relit;
+}
+
+Relit relight_over_links(const Visibility& seen, const ColoredLight& direct,
+                         const std::vector<glm::vec3>& patch_albedo, int bounces,
+                         std::optional<double> most) {
+  expect_equal(direct.texels.size(), seen.direct_over_pi.size(), "direct light of texels");
+  expect_equal(direct.patches.size(), size_t{seen.gather.columns}, "direct light of patches");
+  expect_equal(patch_albedo.size(), direct.patches.size(), "albedo of patches");
+  const int width = seen.direct_over_pi.width, height = seen.direct_over_pi.height;
+  Relit relit;
+  relit.bounces.assign(static_cast<size_t>(bounces) + 1, Grid<glm::vec3>(width, height));
+  for (int c = 0; c < 3; ++c) {
+    store_channel(channel(direct.texels, c), c, relit.bounces[0]);
+    std::vector<double> light = channel(direct.patches, c), next(light.size());
+    std::vector<double> at_texels(direct.texels.size());
+    for (int b = 1; b <= bounces; ++b) {
+      for (size_t j = 0; j < light.size(); ++j) light[j] *= static_cast<double>(patch_albedo[j][c]);
+      gather(seen.gather, light, at_texels);
+      store_channel(at_texels, c, relit.bounces[static_cast<size_t>(b)]);
+      if (b == bounces) break;
+      gather(seen.patch_links(), light, next);
+      light.swap(next);
+    }
+  }
+  glm::vec3 largest(0);
+  for (const glm::vec3& albedo : patch_albedo) largest = glm::max(largest, albedo);
+  add_up(relit, largest, most.value_or(std::numeric_limits<double>::infinity()));
+  return relit;
+}
+
+std::vector<glm::vec3> albedo_of_patches(const Surface& surface, const Albedo& albedo,
+                                         const PatchSet& patches) {
+  std::vector<glm::vec3> values(patches.count, albedo.constant);
+  if (albedo.map.empty()) return values;
+  if (patches.kind == Patches::kTexels) return albedo.map.values;
+  for (uint32_t patch = 0; patch < patches.count; ++patch) {
+    const FacetNode node = facet_node(patches, patch);
+    const glm::dvec2 uv = node_uv(node.node);
+    const auto corners = facet_corners(surface, node.facet).texel;
+    const auto at = [&](int c) {
+      return glm::dvec3(albedo.map(corners[c].x % surface.width(), corners[c].y % surface.height()));
+    };
+    values[patch] = glm::vec3((1 - uv.x - uv.y) * at(0) + uv.x * at(1) + uv.y * at(2));
+  }
+  return values;
+}
+
+}  // namespace hemibake

@@ -1,0 +1,185 @@
+#include "reference/ray_caster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace hemibake {
+
+// A ray with its height in metres, so that it compares with the map as stored. x, y move back by whole tiles.
+struct HeightWalk::Ray {
+  double x, y, z_m;
+  double dx, dy, dz_m;
+  double inverse_dx, inverse_dy;
+
+  double x_at(double t) const { return x + t * dx; }
+  double y_at(double t) const { return y + t * dy; }
+  double z_at(double t) const { return z_m + t * dz_m; }
+};
+
+HeightWalk::HeightWalk(const Surface& surface)
+    : surface_(surface),
+      cells_x_(surface.edge == Edge::kWrap ? surface.width() : surface.width() - 1),
+      cells_y_(surface.edge == Edge::kWrap ? surface.height() : surface.height() - 1),
+      range_m_(height_range_m(surface)),
+      lost_distance_(1e5 * std::max(1.0, range_m_ / surface.texel_size_m)) {
+  build_tops();
+}
+
+void HeightWalk::build_tops() {
+  // A level per factor of 4: finer steps cost more tests than they skip (FACTS.md §5 measured 4 to 64).
+  Grid<float> finer(cells_x_, cells_y_);
+  for (int y = 0; y < cells_y_; ++y)
+    for (int x = 0; x < cells_x_; ++x)
+      finer(x, y) =
+          std::max({height_m(x, y), height_m(x + 1, y), height_m(x, y + 1), height_m(x + 1, y + 1)});
+  while (finer.width > 1 || finer.height > 1) {
+    Grid<float> coarser((finer.width + 3) / 4, (finer.height + 3) / 4, 0);
+    for (int y = 0; y < finer.height; ++y)
+      for (int x = 0; x < finer.width; ++x)
+        coarser(x / 4, y / 4) = std::max(coarser(x / 4, y / 4), finer(x, y));
+    tops_m_.push_back(coarser);
+    finer = std::move(coarser);
+  }
+}
+
+// x, y up to one beyond the last texel.
+float HeightWalk::height_m(int x, int y) const {
+  return surface_.heights_m(x == surface_.width() ? 0 : x, y == surface_.height() ? 0 : y);
+}
+
+HeightWalk::Half HeightWalk::half_of(int cell_x, int cell_y, bool far_half) const {
+  const double along_x = height_m(cell_x + 1, cell_y), along_y = height_m(cell_x, cell_y + 1);
+  if (!far_half) {
+    const double corner = height_m(cell_x, cell_y);
+    return {1.0 * cell_x, 1.0 * cell_y, corner, along_x - corner, along_y - corner};
+  }
+  const double corner = height_m(cell_x + 1, cell_y + 1);
+  return {cell_x + 1.0, cell_y + 1.0, corner, corner - along_y, corner - along_x};
+}
+
+SurfacePoint HeightWalk::point_on(const Half& half, double x, double y) const {
+  const double texel = surface_.texel_size_m;
+  return {{x, y, half.height_m(x, y) / texel},
+          glm::normalize(glm::dvec3(-half.slope_x_m / texel, -half.slope_y_m / texel, 1))};
+}
+
+uint32_t HeightWalk::facet_count() const {
+  return 2 * static_cast<uint32_t>(cells_x_) * static_cast<uint32_t>(cells_y_);
+}
+
+double HeightWalk::start_lift(double wanted_texels) const {
+  const double range = range_m_ / surface_.texel_size_m;
+  return std::max(wanted_texels * std::min(1.0, range), 0x1p-44 * range);
+}
+
+SurfacePoint HeightWalk::point_on_facet(uint32_t facet, double u, double v) const {
+  const uint32_t cell = facet / 2, columns = static_cast<uint32_t>(cells_x_);
+  const bool far_half = facet % 2 == 1;
+  const Half half = half_of(static_cast<int>(cell % columns), static_cast<int>(cell / columns), far_half);
+  const double leg = far_half ? -1 : 1;
+  return point_on(half, half.corner_x + leg * u, half.corner_y + leg * v);
+}
+
+HeightWalk::Block HeightWalk::block_at(int cell_x, int cell_y, int level) const {
+  if (level == 0) {
+    const float top = std::max({height_m(cell_x, cell_y), height_m(cell_x + 1, cell_y),
+                                height_m(cell_x, cell_y + 1), height_m(cell_x + 1, cell_y + 1)});
+    return {cell_x, cell_x + 1, cell_y, cell_y + 1, top};
+  }
+  const int shift = 2 * level;
+  const int block_x = cell_x >> shift, block_y = cell_y >> shift;
+  return {block_x << shift, std::min((block_x + 1) << shift, cells_x_), block_y << shift,
+          std::min((block_y + 1) << shift, cells_y_),
+          tops_m_[static_cast<size_t>(level - 1)](block_x, block_y)};
+}
+
+bool HeightWalk::hits_half(const Ray& ray, const Half& half, double enter, double leave,
+                           SurfacePoint& hit) const {
+  const double below = half.height_m(ray.x_at(leave), ray.y_at(leave)) - ray.z_at(leave);
+  if (below <= 0) return false;
+  // Rounding may put the entry below the plane too: it counts as on it.
+  const double above = std::max(0.0, ray.z_at(enter) - half.height_m(ray.x_at(enter), ray.y_at(enter)));
+  const double t = enter + (leave - enter) * above / (above + below);
+  hit = point_on(half, ray.x_at(t), ray.y_at(t));
+  return true;
+}
+
+bool HeightWalk::hits_cell(const Ray& ray, int cell_x, int cell_y, double enter, double leave,
+                           SurfacePoint& hit) const {
+  // The diagonal is where the shares along both legs add up to 1.
+  const double diagonal = cell_x + cell_y + 1.0;
+  const double enter_side = ray.x_at(enter) + ray.y_at(enter) - diagonal;
+  const double leave_side = ray.x_at(leave) + ray.y_at(leave) - diagonal;
+  if ((enter_side < 0) == (leave_side < 0))
+    return hits_half(ray, half_of(cell_x, cell_y, enter_side >= 0), enter, leave, hit);
+  const double cross = enter + (leave - enter) * enter_side / (enter_side - leave_side);
+  return hits_half(ray, half_of(cell_x, cell_y, enter_side >= 0), enter, cross, hit) ||
+         hits_half(ray, half_of(cell_x, cell_y, leave_side >= 0), cross, leave, hit);
+}
+
+WalkEnd HeightWalk::follow(const glm::dvec3& start, const glm::dvec3& direction, SurfacePoint& hit) const {
+  const double texel = surface_.texel_size_m;
+  Ray ray{start.x, start.y, start.z * texel, direction.x, direction.y, direction.z * texel, 0, 0};
+  // Finite, so that on the very edge of a block (0 texels to go) the product is 0.
+  constexpr double kNever = 1e300;
+  ray.inverse_dx = ray.dx == 0 ? kNever : 1 / ray.dx;
+  ray.inverse_dy = ray.dy == 0 ? kNever : 1 / ray.dy;
+  const bool rises = ray.dz_m >= 0;
+  if (rises && ray.z_m >= range_m_) return WalkEnd::kSky;
+
+  // Where the ray has left the slab of the relief: above the top, or surely below the ground (height 0).
+  const double below_ground = texel + 1e-6 * range_m_;
+  const double end = rises ? (range_m_ - ray.z_m) / ray.dz_m : (ray.z_m + below_ground) / -ray.dz_m;
+  const double lost = lost_distance_ / std::hypot(ray.dx, ray.dy);
+  const int last_level = static_cast<int>(tops_m_.size());
+  int cell_x = std::clamp(static_cast<int>(std::floor(ray.x)), 0, cells_x_ - 1);
+  int cell_y = std::clamp(static_cast<int>(std::floor(ray.y)), 0, cells_y_ - 1);
+  double t = 0;
+  for (int level = 0; t <= lost;) {
+    const Block block = block_at(cell_x, cell_y, level);
+    const double leave_x = ((ray.dx >= 0 ? block.end_x : block.begin_x) - ray.x) * ray.inverse_dx;
+    const double leave_y = ((ray.dy >= 0 ? block.end_y : block.begin_y) - ray.y) * ray.inverse_dy;
+    const double leave = std::max(t, std::min({leave_x, leave_y, end}));
+    const bool clear = std::min(ray.z_at(t), ray.z_at(leave)) > static_cast<double>(block.top_m);
+    if (!clear && level > 0) {
+      --level;
+      continue;
+    }
+    if (!clear && hits_cell(ray, cell_x, cell_y, t, leave, hit)) {
+      hit.position.x = std::clamp(hit.position.x, 1.0 * cell_x, cell_x + 1.0);
+      hit.position.y = std::clamp(hit.position.y, 1.0 * cell_y, cell_y + 1.0);
+      return WalkEnd::kHit;
+    }
+    if (leave >= end) return WalkEnd::kSky;
+
+    // On to the neighbouring cell. Cells advance by whole numbers: rounding of t cannot stop the walk.
+    t = leave;
+    if (leave_x <= leave_y) {
+      cell_x = ray.dx >= 0 ? block.end_x : block.begin_x - 1;
+      if (level > 0)
+        cell_y = std::clamp(static_cast<int>(std::floor(ray.y_at(t))), block.begin_y, block.end_y - 1);
+    } else {
+      cell_y = ray.dy >= 0 ? block.end_y : block.begin_y - 1;
+      if (level > 0)
+        cell_x = std::clamp(static_cast<int>(std::floor(ray.x_at(t))), block.begin_x, block.end_x - 1);
+    }
+    const int tiles_x = cell_x < 0 ? -1 : cell_x == cells_x_ ? 1 : 0;
+    const int tiles_y = cell_y < 0 ? -1 : cell_y == cells_y_ ? 1 : 0;
+    if (tiles_x != 0 || tiles_y != 0) {
+      if (surface_.edge == Edge::kOpen) return WalkEnd::kSky;
+      cell_x -= tiles_x * cells_x_;
+      cell_y -= tiles_y * cells_y_;
+      ray.x -= tiles_x * cells_x_;
+      ray.y -= tiles_y * cells_y_;
+    }
+    // The block around this one was tried on the way down: coarser only where the ray has entered another.
+    const int shift = 2 * (level + 1);
+    const bool entered =
+        block.begin_x >> shift != cell_x >> shift || block.begin_y >> shift != cell_y >> shift;
+    if (entered && level < last_level) ++level;
+  }
+  return WalkEnd::kLost;
+}
+
+}  // namespace hemibake

@@ -1,0 +1,51 @@
+// The makers behind synthesize(), one per kind. For surface/synthetic*.cpp only.
+#pragma once
+
+#include <algorithm>
+
+#include "core/parallel.h"
+#include "surface/synthetic/noise.h"
+#include "surface/synthetic/synthetic.h"
+
+namespace hemibake {
+
+// options are valid, angle_rad is set for kinds that have an angle. Materials may return any finite range:
+// synthesize stretches it to 0..1.
+Grid<float> make_bricks(const SyntheticOptions& options);
+Grid<float> make_shapes(const SyntheticOptions& options);
+Grid<float> make_concrete(const SyntheticOptions& options);
+Grid<float> make_noise(const SyntheticOptions& options);
+Grid<float> make_bowl(const SyntheticOptions& options);
+Grid<float> make_groove(const SyntheticOptions& options);
+Grid<float> make_canyon(const SyntheticOptions& options);
+Grid<float> make_step(const SyntheticOptions& options);
+
+inline Tile tile_of(const SyntheticOptions& options) {
+  const double longer = std::max(options.width, options.height);
+  return {options.width / longer, options.height / longer};
+}
+
+// The highest frequency that texels can carry: a lattice cell is two texels.
+inline double highest_frequency(const SyntheticOptions& options) {
+  return std::max(options.width, options.height) / 2.0;
+}
+
+// height(i, j) for every texel.
+template <class Height>
+Grid<float> fill_texels(const SyntheticOptions& options, const Height& height) {
+  Grid<float> map(options.width, options.height);
+  parallel_for(static_cast<size_t>(options.height), 8, [&](size_t begin, size_t end) {
+    for (int j = static_cast<int>(begin); j < static_cast<int>(end); ++j)
+      for (int i = 0; i < options.width; ++i) map(i, j) = static_cast<float>(height(i, j));
+  });
+  return map;
+}
+
+// height(x, y) at every texel centre, in units of the longer side.
+template <class Height>
+Grid<float> fill_points(const SyntheticOptions& options, const Height& height) {
+  const double texel = 1.0 / std::max(options.width, options.height);
+  return fill_texels(options, [&](int i, int j) { return height((i + 0.5) * texel, (j + 0.5) * texel); });
+}
+
+}  // namespace hemibake

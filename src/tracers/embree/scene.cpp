@@ -1,0 +1,202 @@
+#include "tracers/embree/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <stdexcept>
+
+namespace hemibake {
+namespace {
+
+// The scene is in units of texels: vertices then stand on integers, which float holds exactly on any map we
+// take.
+constexpr int kSmallestBlock =
+    64;                      // texels: smaller maps are repeated, so that a step to the next copy is worth it
+constexpr int kMargin = 64;  // texels of neighbouring copies around the block
+
+// Errors are asked for where they matter; an exception must not leave this callback.
+void ignore_embree_error(void*, RTCError, const char*) {}
+
+}  // namespace
+
+EmbreeScene::EmbreeScene(const Surface& surface, double max_distance_m)
+    : surface_(surface), wrap_(surface.edge == Edge::kWrap) {
+  const double range = height_range_m(surface) / surface.texel_size_m;
+  top_texels_ = static_cast<float>(range);
+  max_distance_texels_ = static_cast<float>(max_distance_m / surface.texel_size_m);
+
+  const int repeat_x = wrap_ ? (kSmallestBlock + surface.width() - 1) / surface.width() : 1;
+  const int repeat_y = wrap_ ? (kSmallestBlock + surface.height() - 1) / surface.height() : 1;
+  block_width_ = repeat_x * surface.width();
+  block_height_ = repeat_y * surface.height();
+  margin_ = wrap_ ? kMargin : 0;
+  const double smallest_block = std::min(block_width_, block_height_);
+  cut_distance_texels_ = std::min(std::max(1e5 * range, 16 * smallest_block), 1e6 * smallest_block);
+  build();
+}
+
+EmbreeScene::~EmbreeScene() {
+  rtcReleaseScene(scene_);
+  rtcReleaseDevice(device_);
+}
+
+void EmbreeScene::build() {
+  // One thread builds: the order of triangles in the tree decides ties between them, and must not depend on
+  // --threads.
+  device_ = rtcNewDevice("threads=1");
+  if (device_ == nullptr) throw std::runtime_error("Embree finds no device");
+  rtcSetDeviceErrorFunction(device_, ignore_embree_error, nullptr);
+  scene_ = rtcNewScene(device_);
+  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+
+  const int open_cells = wrap_ ? 0 : 1;
+  const uint32_t columns = static_cast<uint32_t>(block_width_ + 2 * margin_ - open_cells);
+  const uint32_t rows = static_cast<uint32_t>(block_height_ + 2 * margin_ - open_cells);
+  scene_columns_ = columns;
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                              static_cast<size_t>(columns + 1) * (rows + 1)));
+  auto* indices =
+      static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                     3 * sizeof(uint32_t), size_t{2} * columns * rows));
+  if (vertices == nullptr || indices == nullptr) {
+    rtcReleaseGeometry(geometry);
+    throw std::bad_alloc();
+  }
+  for (uint32_t j = 0; j <= rows; ++j) {
+    for (uint32_t i = 0; i <= columns; ++i) {
+      const int x = static_cast<int>(i) - margin_, y = static_cast<int>(j) - margin_;
+      const double height_m =
+          surface_.heights_m(wrap_index(x, surface_.width()), wrap_index(y, surface_.height()));
+      *vertices++ = static_cast<float>(x);
+      *vertices++ = static_cast<float>(y);
+      *vertices++ = static_cast<float>(height_m / surface_.texel_size_m);
+    }
+  }
+  // The same cut and the same order of corners as surface/facets.h.
+  for (uint32_t j = 0; j < rows; ++j) {
+    for (uint32_t i = 0; i < columns; ++i) {
+      const uint32_t corner = j * (columns + 1) + i;
+      for (const uint32_t index : {corner, corner + 1, corner + columns + 1,  //
+                                   corner + columns + 2, corner + columns + 1, corner + 1})
+        *indices++ = index;
+    }
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene_);
+  if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
+    throw std::runtime_error(
+        fmt::format("Embree could not build the scene (error {})", static_cast<int>(error)));
+}
+
+uint32_t EmbreeScene::facet_of_primitive(uint32_t primitive) const {
+  const uint32_t cell = primitive / 2;
+  const int x = static_cast<int>(cell % scene_columns_) - margin_,
+            y = static_cast<int>(cell / scene_columns_) - margin_;
+  if (!wrap_) return primitive;
+  const int i = wrap_index(x, surface_.width()), j = wrap_index(y, surface_.height());
+  return 2 * static_cast<uint32_t>(surface_.heights_m.index(i, j)) + primitive % 2;
+}
+
+// Traces one straight piece inside the scene; on a hit of the ray's own facet (rounding on a steep wall) it
+// goes on behind it: a flat facet never sees itself.
+Fate EmbreeScene::follow_segment(const glm::vec3& start, const glm::vec3& direction, float length,
+                                 uint32_t own_facet, SurfaceHit* hit) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query;
+  RTCRay& ray = query.ray;
+  ray.org_x = start.x;
+  ray.org_y = start.y;
+  ray.org_z = start.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
+  ray.tnear = 0;
+  ray.tfar = length;
+  ray.time = 0;
+  ray.mask = 0xffffffff;
+  ray.id = 0;
+  ray.flags = 0;
+  if (hit == nullptr) {
+    rtcOccluded1(scene_, &context, &ray);
+    return ray.tfar < 0 ? Fate::kHit : Fate::kSky;
+  }
+  for (;;) {
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Fate::kSky;
+    const uint32_t facet = facet_of_primitive(query.hit.primID);
+    if (facet != own_facet) {
+      *hit = {facet, query.hit.u, query.hit.v, static_cast<double>(ray.tfar), 0};
+      return Fate::kHit;
+    }
+    ray.tnear = std::max(std::nextafter(ray.tfar, length), ray.tfar * 1.00001f);
+    ray.tfar = length;
+    if (ray.tnear >= length) return Fate::kSky;
+  }
+}
+
+// Length along a ray from (x, y) until it leaves the block and the margin, less one cell kept as overlap. In
+// float: an error is far less than that cell. A direction of 0 along an axis never leaves along it (x / 0 =
+// ∞, inside).
+float EmbreeScene::length_in_block(float x, float y, const glm::vec3& direction) const {
+  const float reach = static_cast<float>(margin_ - 1);
+  const float edge_x = std::signbit(direction.x) ? -reach : static_cast<float>(block_width_) + reach;
+  const float edge_y = std::signbit(direction.y) ? -reach : static_cast<float>(block_height_) + reach;
+  return std::min((edge_x - x) / direction.x, (edge_y - y) / direction.y);
+}
+
+Fate EmbreeScene::follow(const glm::vec3& start, const glm::vec3& direction, uint32_t own_facet,
+                         SurfaceHit* hit) const {
+  // Where the ray has left the slab of the relief. Rounded up: the highest texel itself can still be met.
+  float end = max_distance_texels_;
+  if (direction.z > 0) {
+    const float climb = top_texels_ - start.z;
+    if (climb <= 0) return Fate::kSky;
+    end = std::min(end, climb / direction.z * 1.0001f);
+  }
+  const float first_length = wrap_ ? std::min(end, length_in_block(start.x, start.y, direction)) : end;
+  const Fate fate = follow_segment(start, direction, first_length, own_facet, hit);
+  if (fate == Fate::kHit || first_length == end) return fate;
+  return follow_beyond(start, direction, first_length, end, own_facet, hit);
+}
+
+// Goes on through the following copies of the map. Positions come from the start in double, so that nothing
+// drifts.
+Fate EmbreeScene::follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length,
+                                double end, uint32_t own_facet, SurfaceHit* hit) const {
+  const double horizontal = std::hypot(direction.x, direction.y);
+  const double cut = cut_distance_texels_ / horizontal;
+  // Each piece begins a little before the last one ended: rounding of its start opens no gap.
+  const double overlap = 0.05 / horizontal;
+  const double stop = std::min(end, cut);
+  double travelled = first_length;
+  for (int tiles = 1; travelled < stop; ++tiles) {
+    const double begin = travelled - overlap;
+    glm::dvec3 position = glm::dvec3(start) + begin * glm::dvec3(direction);
+    position.x -= block_width_ * std::floor(position.x / block_width_);
+    position.y -= block_height_ * std::floor(position.y / block_height_);
+    const glm::vec3 piece_start(position);
+    // A piece is a block long or more but for the last one, so this comes to an end.
+    const double length = length_in_block(piece_start.x, piece_start.y, direction);
+    travelled = begin + length;
+    const float piece_length = static_cast<float>(std::min(length, stop - begin));
+    if (follow_segment(piece_start, direction, piece_length, own_facet, hit) == Fate::kHit) {
+      if (hit != nullptr) {
+        hit->distance_texels += begin;
+        hit->tiles_crossed = tiles;
+      }
+      return Fate::kHit;
+    }
+  }
+  return end <= cut ? Fate::kSky : Fate::kCutShort;
+}
+
+}  // namespace hemibake

@@ -1,0 +1,57 @@
+// The triangles of a surface in Embree, and how a ray is followed over them: through the copies of a wrapping
+// map too (tracers/embree/embree.h says how far). In units of texels.
+#pragma once
+
+#include <embree3/rtcore.h>
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "surface/facets.h"
+#include "surface/surface.h"
+
+namespace hemibake {
+
+enum class Fate { kSky, kHit, kCutShort };
+
+struct SurfaceHit {
+  uint32_t facet = kNoFacet;
+  float u = 0, v = 0;          // barycentric coordinates of the facet's corners 1 and 2
+  double distance_texels = 0;  // from the start of the ray
+  int tiles_crossed = 0;
+};
+
+class EmbreeScene {
+ public:
+  // Throws std::runtime_error where Embree fails (out of memory). `surface` must outlive the scene.
+  EmbreeScene(const Surface& surface, double max_distance_m);
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+  ~EmbreeScene();
+
+  // direction: unit. own_facet: the ray does not meet it; kNoFacet: it starts on none. hit: null where only
+  // the fate is asked for.
+  Fate follow(const glm::vec3& start, const glm::vec3& direction, uint32_t own_facet, SurfaceHit* hit) const;
+
+ private:
+  void build();
+  Fate follow_segment(const glm::vec3& start, const glm::vec3& direction, float length, uint32_t own_facet,
+                      SurfaceHit* hit) const;
+  Fate follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length, double end,
+                     uint32_t own_facet, SurfaceHit* hit) const;
+  float length_in_block(float x, float y, const glm::vec3& direction) const;
+  uint32_t facet_of_primitive(uint32_t primitive) const;
+
+  const Surface& surface_;
+  RTCDevice device_ = nullptr;
+  RTCScene scene_ = nullptr;
+  bool wrap_;
+  int block_width_, block_height_;  // texels the scene repeats the map to
+  int margin_;
+  uint32_t scene_columns_;  // cells in a row of the scene
+  float top_texels_;        // height of the highest texel
+  float max_distance_texels_;
+  double cut_distance_texels_;  // horizontal distance after which a ray is cut short
+};
+
+}  // namespace hemibake

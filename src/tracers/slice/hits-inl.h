@@ -1,0 +1,188 @@
+// Vectors over the lanes of a packet, the closed forms of a slice, and the slopes at which a slice is sampled
+// for links. Compiled once for every target of Highway: no include guard of the usual kind.
+#if defined(HEMIBAKE_SLICE_HITS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef HEMIBAKE_SLICE_HITS_INL_H
+#undef HEMIBAKE_SLICE_HITS_INL_H
+#else
+#define HEMIBAKE_SLICE_HITS_INL_H
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "tracers/slice/walk.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace hemibake {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F = hn::CappedTag<float, kSliceLanes>;
+using V = hn::Vec<F>;
+constexpr F kF;
+constexpr size_t kWidth = hn::MaxLanes(F());
+constexpr size_t kParts = kSliceLanes / kWidth;
+
+// One number per lane of a packet.
+struct Vectors {
+  V part[kParts];
+};
+
+// Where the lanes of a packet start, and what they have met.
+struct Lanes {
+  Vectors base, rise;  // the start is `rise` above `base`
+  Vectors to_top;      // from the start to the highest texel
+  Vectors rim;         // lowest slope
+  Vectors slope;       // of the horizon so far
+  Vectors above;       // only with stretches: cosine_above the horizon so far
+};
+
+HWY_INLINE V broadcast(double value) { return hn::Set(kF, static_cast<float>(value)); }
+
+HWY_INLINE Vectors load(const LaneArray<float>& values) {
+  Vectors v;
+  for (size_t p = 0; p < kParts; ++p) v.part[p] = hn::LoadU(kF, values.data() + p * kWidth);
+  return v;
+}
+
+// a · x + b · y
+HWY_INLINE Vectors along(const LaneArray<float>& a, const LaneArray<float>& b, double x, double y) {
+  const Vectors va = load(a), vb = load(b);
+  Vectors v;
+  for (size_t p = 0; p < kParts; ++p)
+    v.part[p] = hn::MulAdd(va.part[p], broadcast(x), hn::Mul(vb.part[p], broadcast(y)));
+  return v;
+}
+
+// Calls act(lane of the part) for every lane of the mask.
+template <class Act>
+HWY_INLINE void for_each_lane(hn::Mask<F> mask, const Act& act) {
+  uint8_t bytes[8] = {};
+  hn::StoreMaskBits(kF, mask, bytes);
+  for (uint32_t bits = bytes[0] | static_cast<uint32_t>(bytes[1]) << 8; bits != 0; bits &= bits - 1)
+    act(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
+}
+
+// ∫ over the elevations θ from slope m to the zenith of cos²θ and of sinθ cosθ.
+struct SkyDirection {
+  V horizontal, vertical;
+};
+
+HWY_INLINE SkyDirection direction_above(V m) {
+  const V half = hn::Set(kF, 0.5f), quarter_turn = hn::Set(kF, 0.785398163f);
+  const V cos2 = hn::Div(hn::Set(kF, 1.0f), hn::MulAdd(m, m, hn::Set(kF, 1.0f)));
+  return {hn::NegMulAdd(half, hn::MulAdd(m, cos2, hn::Atan(kF, m)), quarter_turn), hn::Mul(half, cos2)};
+}
+
+// The same of cosθ: 1 − sinθ, without cancellation near the zenith.
+HWY_INLINE V uniform_above(V m) {
+  const V one = hn::Set(kF, 1.0f), cos2 = hn::Div(one, hn::MulAdd(m, m, one));
+  const V sine = hn::Mul(hn::Abs(m), hn::Sqrt(cos2));
+  return hn::IfThenElse(hn::Lt(m, hn::Zero(kF)), hn::Add(one, sine), hn::Div(cos2, hn::Add(one, sine)));
+}
+
+// The same of the cosine to a normal whose plane has the slope `rim` in this slice, over normal.z.
+HWY_INLINE V cosine_above(V m, V rim) {
+  const SkyDirection sky = direction_above(m);
+  return hn::NegMulAdd(rim, sky.horizontal, sky.vertical);
+}
+
+HWY_INLINE void add_lanes(V v, double* sum) {
+  alignas(64) float values[kWidth];
+  hn::Store(v, kF, values);
+  for (size_t i = 0; i < kWidth; ++i) sum[i] += static_cast<double>(values[i]);
+}
+
+HWY_INLINE void add_sky(const Vectors& slope, const glm::dvec2& direction, SliceSums& sums) {
+  for (size_t p = 0; p < kParts; ++p) {
+    const size_t lane = p * kWidth;
+    const SkyDirection sky = direction_above(slope.part[p]);
+    add_lanes(uniform_above(slope.part[p]), sums.uniform.data() + lane);
+    add_lanes(hn::Mul(sky.horizontal, broadcast(direction.x)), sums.x.data() + lane);
+    add_lanes(hn::Mul(sky.horizontal, broadcast(direction.y)), sums.y.data() + lane);
+    add_lanes(sky.vertical, sums.z.data() + lane);
+  }
+}
+
+// The slope of lanes that are not walked: above every other.
+constexpr float kClosed = 1e30f;
+
+// A slice of a steep receiver holds up to π times the mean of its slices.
+constexpr int kMostHits = 22 * kHitsPerSlice / 7 + 1;
+
+// Where a packet's slices are sampled: the blocked part of each lane's slice at equal steps of its weight.
+struct HitSlopes {
+  // Ascending; kClosed after a lane's last one.
+  alignas(64) float slope[kMostHits + 1][kSliceLanes];
+  int most = 0;  // of the lane with the most
+};
+
+// A slice above the slope `rim`, by the angle δ above it. With θ the angle of the rim, ∫ cosine over the
+// slice up to δ, over normal.z, is (sin δ sin(δ + θ) − δ sin θ) / (2 cos θ), and grows by
+// sin δ cos(δ + θ) / cos θ.
+struct Slice {
+  V angle, cosine, sine;  // of the rim
+
+  HWY_INLINE explicit Slice(V rim) {
+    const V one = hn::Set(kF, 1.0f);
+    angle = hn::Atan(kF, rim);
+    cosine = hn::Div(one, hn::Sqrt(hn::MulAdd(rim, rim, one)));
+    sine = hn::Mul(rim, cosine);
+  }
+
+  // A step of Halley's method from δ towards the angle with `weight` below it, no further than `most`.
+  HWY_INLINE V nearer(V delta, V weight, V most) const {
+    const V s = hn::Sin(kF, delta), c = hn::Cos(kF, delta);
+    const V sine_up = hn::MulAdd(s, cosine, hn::Mul(c, sine)),
+            cosine_up = hn::MulSub(c, cosine, hn::Mul(s, sine));
+    const V twice_below = hn::MulSub(s, sine_up, hn::Mul(delta, sine));
+    const V error = hn::NegMulAdd(hn::Add(weight, weight), cosine, twice_below);
+    const V growth = hn::Mul(s, cosine_up), two = hn::Set(kF, 2.0f);
+    const V bend = hn::MulSub(c, cosine_up, hn::Mul(s, sine_up));
+    // f, f' and f'' of the equation, times 2 cos θ, cos θ and cos θ; the step is 2 f f' / (2 f'² − f f'').
+    const V divisor = hn::MulSub(hn::Mul(two, growth), hn::Mul(two, growth), hn::Mul(error, bend));
+    const V step = hn::Div(hn::Mul(hn::Mul(two, error), growth), hn::Max(divisor, hn::Set(kF, 1e-20f)));
+    return hn::Min(most, hn::Max(hn::Zero(kF), hn::Sub(delta, step)));
+  }
+
+  HWY_INLINE V slope_at(V delta) const {
+    const V s = hn::Sin(kF, delta), c = hn::Cos(kF, delta);
+    return hn::Div(hn::MulAdd(s, cosine, hn::Mul(c, sine)),
+                   hn::Max(hn::MulSub(c, cosine, hn::Mul(s, sine)), hn::Set(kF, 1e-20f)));
+  }
+};
+
+// Where the lanes of one part are sampled, from the slope `rim` to `horizon`: at (place + 0, 1, 2, …) /
+// per_weight of the weight above the rim, so that every sample stands for as much. place: in [0, 1).
+HWY_INLINE void place_hits(size_t part, V rim, V horizon, V per_weight, V place, HitSlopes& hits) {
+  const V zero = hn::Zero(kF), one = hn::Set(kF, 1.0f), closed = hn::Set(kF, kClosed);
+  const Slice slice(rim);
+  const V most_delta = hn::Max(zero, hn::Sub(hn::Atan(kF, horizon), slice.angle));
+  const V whole = hn::Max(cosine_above(rim, rim), hn::Set(kF, 1e-30f));
+  const V blocked = hn::Sub(whole, cosine_above(horizon, rim));
+  const V wanted = hn::Ceil(hn::MulSub(blocked, per_weight, place));
+  const V count = hn::IfThenElse(hn::Lt(horizon, closed),
+                                 hn::Min(hn::Max(wanted, zero), hn::Set(kF, float{kMostHits})), zero);
+  const V weight_of_hit = hn::Div(one, hn::Max(per_weight, hn::Set(kF, 1e-30f)));
+  const int most = static_cast<int>(hn::GetLane(hn::MaxOfLanes(kF, count)));
+  hits.most = std::max(hits.most, most);
+  // The weight grows with the angle nearly as sin² does over a quarter turn, exactly so on level ground.
+  const V over_whole = hn::Div(one, whole);
+  const V widths = hn::Sub(one, hn::Mul(slice.angle, hn::Set(kF, 0.636619772f)));
+  V weight = hn::Mul(place, weight_of_hit);
+  for (int k = 0; k < most; ++k) {
+    const V share = hn::Min(one, hn::Mul(weight, over_whole));
+    const V delta = slice.nearer(hn::Mul(widths, hn::Asin(kF, hn::Sqrt(share))), weight, most_delta);
+    const auto used = hn::Lt(hn::Set(kF, static_cast<float>(k)), count);
+    const V slope = hn::Min(horizon, slice.slope_at(delta));
+    hn::StoreU(hn::IfThenElse(used, slope, closed), kF, hits.slope[k] + part * kWidth);
+    weight = hn::Add(weight, weight_of_hit);
+  }
+  hn::StoreU(closed, kF, hits.slope[most] + part * kWidth);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace hemibake
+HWY_AFTER_NAMESPACE();
+
+#endif  // HEMIBAKE_SLICE_HITS_INL_H

@@ -1,0 +1,84 @@
+#include "transport/links/spill_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "core/error.h"
+
+namespace hemibake {
+namespace {
+
+// Addresses set aside for the file, more than any machine's disk holds of links: they cost nothing, and the
+// file then lies in one piece however it grows.
+constexpr size_t kMostBytes = size_t{1} << 44;
+constexpr size_t kAlignment = 64;
+// Reading a page maps the others of the same 64 KiB that the system holds (Linux, "fault around"): they have
+// to go with it, or released bytes come back with their neighbours.
+constexpr uintptr_t kMappedTogether = uintptr_t{64} << 10;
+
+[[noreturn]] void fail(const std::filesystem::path& folder, const char* what) {
+  throw InputError(
+      fmt::format("{}: could not {} a temporary file for links: {}, expected room for it or more "
+                  "--memory",
+                  folder.string(), what, std::strerror(errno)));
+}
+
+// Open and without a name.
+int open_nameless(const std::filesystem::path& folder) {
+  std::string name = (folder / ".hemibake-links-XXXXXX").string();
+  const int descriptor = mkostemp(name.data(), O_CLOEXEC);
+  if (descriptor < 0) fail(folder, "make");
+  unlink(name.c_str());
+  return descriptor;
+}
+
+}  // namespace
+
+SpillFile::SpillFile(const std::filesystem::path& folder) : folder_(folder.empty() ? "." : folder) {
+  descriptor_ = open_nameless(folder_);
+  void* map = mmap(nullptr, kMostBytes, PROT_READ, MAP_SHARED | MAP_NORESERVE, descriptor_, 0);
+  if (map == MAP_FAILED) {
+    close(descriptor_);
+    fail(folder_, "map");
+  }
+  map_ = static_cast<std::byte*>(map);
+}
+
+SpillFile::~SpillFile() {
+  munmap(map_, kMostBytes);
+  close(descriptor_);
+}
+
+const std::byte* SpillFile::store(std::initializer_list<std::span<const std::byte>> parts) {
+  size_t total = 0;
+  for (const auto& part : parts) total += part.size();
+  const size_t begin = size_.fetch_add((total + kAlignment - 1) / kAlignment * kAlignment);
+  size_t at = begin;
+  for (std::span<const std::byte> part : parts) {
+    while (!part.empty()) {
+      const ssize_t written = pwrite(descriptor_, part.data(), part.size(), static_cast<off_t>(at));
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail(folder_, "write");
+      part = part.subspan(static_cast<size_t>(written));
+      at += static_cast<size_t>(written);
+    }
+  }
+  return map_ + begin;
+}
+
+void SpillFile::release(const std::byte* bytes, size_t size) {
+  const uintptr_t begin = reinterpret_cast<uintptr_t>(bytes) / kMappedTogether * kMappedTogether;
+  const uintptr_t last = reinterpret_cast<uintptr_t>(bytes) + size;
+  const uintptr_t end = (last + kMappedTogether - 1) / kMappedTogether * kMappedTogether;
+  madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
+}
+
+}  // namespace hemibake

@@ -1,0 +1,116 @@
+// The slice tracer gives the same answer however it is asked and on every machine.
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <cmath>
+
+#include "support/maps.h"
+#include "tracers/slice/slice.h"
+#include "transport/bounces.h"
+
+namespace hemibake {
+namespace {
+
+SliceOptions azimuths(int count) {
+  SliceOptions options;
+  options.azimuths = count;
+  return options;
+}
+
+Visibility look(const Surface& surface, const SliceOptions& options, bool with_links) {
+  return trace_surface(*make_slice_tracer(surface, options), surface.width(), surface.height(),
+                       options.patches, with_links);
+}
+
+// One binary serves every x86-64 machine: each set of vector instructions that this one has gives the same
+// light. Fused and plain multiply-adds round apart by some 10⁻⁷ of the heights.
+TEST(SliceSame, EveryInstructionSetSeesTheSame) {
+  const Surface surface = white_noise_surface(40, 24, 0.1);
+  const Visibility best = look(surface, azimuths(16), true);
+  const auto light = [](const Visibility& seen) {
+    BounceOptions options;
+    options.bounces = 1;
+    return bounce_light(seen, options).irradiance[1];
+  };
+  const Grid<float> best_light = light(best);
+  const int64_t all = hwy::SupportedTargets();
+  int targets = 0;
+  for (int64_t left = all; left != 0; left &= left - 1, ++targets) {
+    const int64_t target = left & -left;
+    hwy::SetSupportedTargetsForTest(target);
+    const Visibility seen = look(surface, azimuths(16), true);
+    const Grid<float> seen_light = light(seen);
+    double difference = 0;
+    for (size_t i = 0; i < surface.texel_count(); ++i) {
+      EXPECT_NEAR(seen.visible_fraction[i], best.visible_fraction[i], 1e-5) << hwy::TargetName(target);
+      EXPECT_NEAR(seen.direct_over_pi[i], best.direct_over_pi[i], 1e-5) << hwy::TargetName(target);
+      difference += std::abs(static_cast<double>(seen_light[i]) - static_cast<double>(best_light[i]));
+    }
+    // A sample on an edge may fall to the facet beside it: a few in ten thousand links.
+    EXPECT_LT(difference / surface.texel_count(), 1e-3) << hwy::TargetName(target);
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  EXPECT_GT(targets, 0);
+}
+
+// A thin pillar on flat ground blocks one or two azimuths of most nodes, or none. Wherever it does there are
+// links, along whichever azimuths it was met, and E₀ is not changed by looking for them.
+TEST(SliceSame, NodesThatSeeOnePillarLinkToIt) {
+  Grid<float> heights(40, 40, 0.0f);
+  heights(20, 20) = 1;
+  const Surface surface = make_surface(std::move(heights), 1, 0.5, Edge::kOpen);
+  const auto tracer = make_slice_tracer(surface, azimuths(16));
+  Row with, without;
+  TracerCounts counts;
+  int blocked = 0;
+  for (uint32_t patch = 0; patch < tracer->patches().count; patch += 5) {
+    tracer->trace_patch(patch, true, with, counts);
+    tracer->trace_patch(patch, false, without, counts);
+    EXPECT_NEAR(with.direct_over_pi, without.direct_over_pi, 1e-4) << patch;
+    EXPECT_EQ(with.links.empty(), with.direct_over_pi == 1) << patch;
+    if (!with.links.empty()) ++blocked;
+  }
+  EXPECT_GT(blocked, 100);
+}
+
+// Another seed is another set of azimuths: nothing of the noise is shared, or it could not be told from two.
+TEST(SliceSame, SeedsAreIndependent) {
+  const Surface surface = white_noise_surface(48, 40, 0.1);
+  const auto tracer = make_slice_tracer(surface, azimuths(16));
+  const auto look_again = [&](uint64_t seed) {
+    return trace_surface(*tracer->reseeded(seed), 48, 40, Patches::kFacets, true);
+  };
+  const Visibility truth = look(surface, azimuths(512), true), first = look_again(1), second = look_again(2);
+  // The correlation of two independent errors of n values is 0 ± 1/√n; packets of 16 share their azimuths.
+  const auto expect_uncorrelated = [](const std::vector<float>& a, const std::vector<float>& b,
+                                      const std::vector<float>& right) {
+    double ab = 0, aa = 0, bb = 0;
+    for (size_t i = 0; i < right.size(); ++i) {
+      const double x = static_cast<double>(a[i] - right[i]), y = static_cast<double>(b[i] - right[i]);
+      ab += x * y;
+      aa += x * x;
+      bb += y * y;
+    }
+    EXPECT_LT(std::abs(ab) / std::sqrt(aa * bb), 4 / std::sqrt(static_cast<double>(right.size()) / 16));
+  };
+  expect_uncorrelated(first.direct_over_pi.values, second.direct_over_pi.values, truth.direct_over_pi.values);
+  expect_uncorrelated(first.patch_direct_over_pi, second.patch_direct_over_pi, truth.patch_direct_over_pi);
+}
+
+// What a tile of texels sees is what its texels see one by one: tiles cut off at both borders.
+TEST(SliceSame, TilesSeeWhatTexelsSee) {
+  const Surface surface = white_noise_surface(77, 35, 0.2);
+  const auto tracer = make_slice_tracer(surface, azimuths(12));
+  const Visibility seen = trace_surface(*tracer, 77, 35, Patches::kFacets, false);
+  Row row;
+  TracerCounts counts;
+  for (uint32_t texel = 0; texel < surface.texel_count(); texel += 7) {
+    tracer->trace_texel(texel, false, row, counts);
+    EXPECT_EQ(static_cast<float>(row.visible_fraction), seen.visible_fraction[texel]) << texel;
+    EXPECT_EQ(static_cast<float>(row.direct_over_pi), seen.direct_over_pi[texel]) << texel;
+  }
+  EXPECT_EQ(seen.counts.rays, 12u * surface.texel_count());
+}
+
+}  // namespace
+}  // namespace hemibake
