@@ -19,7 +19,7 @@ constexpr double kRounding = 2e-6;
 constexpr double kRowSumTolerance = 1e-5;
 constexpr double kForInformation = std::numeric_limits<double>::infinity();
 
-double worst_row(const Links& links, const std::vector<float>& direct) {
+double worst_row(const FormFactorMatrix& links, const std::vector<float>& direct) {
   const std::vector<double> sums = row_sums(links);
   double worst = 0;
   for (size_t i = 0; i < sums.size(); ++i)
@@ -106,17 +106,19 @@ void check_bounds(const Bake& bake, const BakeCheckOptions& options, Checks& che
 
 }  // namespace
 
-LinkEnergy measure_link_energy(const Surface& surface, const PatchSet& patches, const Visibility& seen) {
+LinkEnergy measure_link_energy(const Surface& surface, const PatchSet& patches, const LightTransport& seen) {
   LinkEnergy energy;
-  energy.row_sum_error = worst_row(seen.gather, seen.direct_over_pi.values);
-  if (seen.patches.empty()) return energy;
-  energy.row_sum_error = std::max(energy.row_sum_error, worst_row(seen.patches, seen.patch_direct_over_pi));
+  energy.row_sum_error = worst_row(seen.final_gather, seen.direct_over_pi.values);
+  if (seen.patch_form_factors.empty()) return energy;
+  energy.row_sum_error =
+      std::max(energy.row_sum_error, worst_row(seen.patch_form_factors, seen.patch_direct_over_pi));
   if (surface.edge != Edge::kWrap) return energy;
 
-  const double rays = static_cast<double>(seen.counts.rays) / (seen.gather.rows + seen.patches.rows);
+  const double rays =
+      static_cast<double>(seen.counts.rays) / (seen.final_gather.rows + seen.patch_form_factors.rows);
   const double opening = 0.5 * facet_count(surface);  // texels²
   double light = 0, variance = 0;
-  for (uint32_t patch = 0; patch < seen.patches.rows; ++patch) {
+  for (uint32_t patch = 0; patch < seen.patch_form_factors.rows; ++patch) {
     const double area = patch_area_texels(surface, patches, patch);
     const double seen_sky = static_cast<double>(seen.patch_direct_over_pi[patch]);
     light += area * seen_sky;

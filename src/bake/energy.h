@@ -18,7 +18,7 @@ struct LinkEnergy {
   std::optional<double> light_over_opening;
   double light_over_opening_stderr = 0;  // of rays taken as random ones: an upper bound for ours
 };
-LinkEnergy measure_link_energy(const Surface& surface, const PatchSet& patches, const Visibility& seen);
+LinkEnergy measure_link_energy(const Surface& surface, const PatchSet& patches, const LightTransport& seen);
 
 struct BakeCheckOptions {
   // Largest |Σ_b E_b/π − 1| of a texel. Absent: what the bake itself says is still under way may be missing.

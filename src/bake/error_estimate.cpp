@@ -34,23 +34,23 @@ struct NodeNoise {
 };
 
 size_t kind_of(const PatchSet& patches, uint32_t patch) {
-  if (patches.kind == Patches::kTexels) return 0;
+  if (patches.kind == PatchKind::kTexels) return 0;
   const FacetNode node = facet_node(patches, patch);
   return node_kind(node.subdivision, node.node);
 }
 
 double binomial(double share) { return share * (1 - share); }
 
-NodeNoise node_noise(const Tracer& again, const Visibility& seen) {
+NodeNoise node_noise(const Tracer& again, const LightTransport& seen) {
   Moments all;
   std::array<Moments, kNodeKinds> squares, binomials;
   Row row;
   TracerCounts counts;
-  for (const uint32_t node : draw_from_strata(again.patches().count, kSample, kSampleStream)) {
+  for (const uint32_t node : stratified_sample(again.patch_set().count, kSample, kSampleStream)) {
     again.trace_patch(node, false, row, counts);
     const double direct = static_cast<double>(seen.patch_direct()[node]);
     const double variance = (row.direct_over_pi - direct) * (row.direct_over_pi - direct) / 2;
-    const size_t kind = kind_of(again.patches(), node);
+    const size_t kind = kind_of(again.patch_set(), node);
     all.add(variance);
     squares[kind].add(variance);
     binomials[kind].add(binomial(direct));
@@ -63,10 +63,10 @@ NodeNoise node_noise(const Tracer& again, const Visibility& seen) {
 }
 
 // The sampled texels again, with the same light of the patches; its noise comes on top.
-Noise trace_again(const Tracer& again, const Visibility& seen, const Bounces& bounces,
+Noise trace_again(const Tracer& again, const LightTransport& seen, const Bounces& bounces,
                   const NodeNoise& nodes) {
   const std::vector<uint32_t> texels =
-      draw_from_strata(static_cast<uint32_t>(seen.direct_over_pi.size()), kSample, kSampleStream);
+      stratified_sample(static_cast<uint32_t>(seen.direct_over_pi.size()), kSample, kSampleStream);
   struct Difference {
     double ao, direct, first, light_variance;
   };
@@ -78,12 +78,12 @@ Noise trace_again(const Tracer& again, const Visibility& seen, const Bounces& bo
       const uint32_t texel = texels[i];
       again.trace_texel(texel, true, row, counts);
       double first = 0, light_variance = 0;
-      for (const Link& link : row.links) {
+      for (const FormFactor& link : row.links) {
         const double weight = static_cast<double>(link.weight);
         const double direct = static_cast<double>(seen.patch_direct()[link.patch]);
         first += weight * direct;
         light_variance +=
-            weight * weight * binomial(direct) * nodes.per_binomial[kind_of(again.patches(), link.patch)];
+            weight * weight * binomial(direct) * nodes.per_binomial[kind_of(again.patch_set(), link.patch)];
       }
       differences[i] = {row.visible_fraction - static_cast<double>(seen.visible_fraction[texel]),
                         row.direct_over_pi - static_cast<double>(seen.direct_over_pi[texel]),
@@ -103,7 +103,7 @@ Noise trace_again(const Tracer& again, const Visibility& seen, const Bounces& bo
 
 // The light of a set of nodes as every other node of each facet tells it: the others get the mean of the two
 // beside them.
-void tell_by_every_other_node(const PatchSet& patches, std::vector<double>& light) {
+void richardson_by_every_other_node(const PatchSet& patches, std::vector<double>& light) {
   const auto runs = static_cast<uint32_t>(patches.first.size() - 1);
   parallel_for(runs, 256, [&](size_t begin, size_t end) {
     for (size_t r = begin; r < end; ++r) {
@@ -145,23 +145,23 @@ MeanLight mean_light(const Bounces& bounces) {
 }
 
 // The same `bounces` times with light told by every other node.
-MeanLight mean_coarse_light(const PatchSet& patches, const Visibility& seen, size_t bounces) {
+MeanLight mean_coarse_light(const PatchSet& patches, const LightTransport& seen, size_t bounces) {
   std::vector<double> light(seen.patch_direct().begin(), seen.patch_direct().end()), next(light.size()),
       sum(light.size()), texels(seen.direct_over_pi.size());
   double power = 0.5;
   MeanLight result;
   for (size_t bounce = 1; bounce <= bounces; ++bounce, power /= 2) {
-    tell_by_every_other_node(patches, light);
+    richardson_by_every_other_node(patches, light);
     for (size_t i = 0; i < light.size(); ++i) sum[i] += power * light[i];
     if (bounce == 1) {
-      gather(seen.gather, light, texels);
+      multiply(seen.final_gather, light, texels);
       result.first = mean(std::span<const double>(texels));
     }
     if (bounce == bounces) break;
-    gather(seen.patch_links(), light, next);
+    multiply(seen.bounce_matrix(), light, next);
     light.swap(next);
   }
-  gather(seen.gather, sum, texels);
+  multiply(seen.final_gather, sum, texels);
   result.half = mean(std::span<const double>(texels));
   return result;
 }
@@ -191,7 +191,7 @@ double curve_error(const Grid<float>& ao, const Grid<float>& irradiance, double 
 
 }  // namespace
 
-ErrorEstimate estimate_errors(const Tracer& again, const Visibility& seen, const Bounces& bounces) {
+ErrorEstimate estimate_errors(const Tracer& again, const LightTransport& seen, const Bounces& bounces) {
   ErrorEstimate errors;
   const NodeNoise nodes = node_noise(again, seen);
   const Noise noise = trace_again(again, seen, bounces, nodes);
@@ -203,18 +203,18 @@ ErrorEstimate estimate_errors(const Tracer& again, const Visibility& seen, const
   // The texels' rows and the light they gather, as if all nodes were seen alike.
   const double blocked = 1 - mean(std::span<const float>(seen.direct_over_pi.values));
   errors.mean_first_rays = std::sqrt(errors.first_rays * errors.first_rays / texels +
-                                     blocked * blocked * nodes.mean_variance / again.patches().count);
+                                     blocked * blocked * nodes.mean_variance / again.patch_set().count);
 
-  if (again.patches().kind == Patches::kFacets) {
+  if (again.patch_set().kind == PatchKind::kFacets) {
     const MeanLight all = mean_light(bounces);
     const MeanLight coarse =
-        mean_coarse_light(again.patches(), seen, std::min(kHalfBounces, bounces.irradiance.size() - 1));
+        mean_coarse_light(again.patch_set(), seen, std::min(kHalfBounces, bounces.irradiance.size() - 1));
     errors.first_patches = std::abs(coarse.first - all.first) / kLeft;
     errors.half_patches = std::abs(coarse.half - all.half) / kLeft;
   }
   errors.total_bounces = std::abs(bounces.mean_residual);
   errors.half_bounces = errors.total_bounces * std::pow(0.5, static_cast<double>(bounces.irradiance.size()));
-  errors.far_horizon = static_cast<double>(seen.counts.cut_short) / static_cast<double>(seen.counts.rays);
+  errors.far_horizon = static_cast<double>(seen.counts.truncated) / static_cast<double>(seen.counts.rays);
   errors.curve_direct =
       curve_error(seen.visible_fraction, bounces.irradiance[0], noise.ao.mean / 2, noise.ao_direct.mean);
   errors.curve_first =

@@ -38,6 +38,6 @@ struct ErrorEstimate {
 };
 
 // again: the same tracer with another seed. `seen` needs links.
-ErrorEstimate estimate_errors(const Tracer& again, const Visibility& seen, const Bounces& bounces);
+ErrorEstimate estimate_errors(const Tracer& again, const LightTransport& seen, const Bounces& bounces);
 
 }  // namespace hemibake

@@ -37,25 +37,25 @@ Pilot trace_pilot(uint32_t count, uint32_t columns, uint32_t most_groups, const 
   TracerCounts counts;
   std::vector<Row> rows(std::min(count, kGroupRows));
   const uint32_t groups = (count + kGroupRows - 1) / kGroupRows;
-  std::vector<uint32_t> firsts = draw_from_strata(groups, most_groups, kPilotStream);
+  std::vector<uint32_t> firsts = stratified_sample(groups, most_groups, kPilotStream);
   for (uint32_t& first : firsts) {
     first *= kGroupRows;
     pilot.rows += std::min(kGroupRows, count - first);
   }
-  Links links = make_links(pilot.rows, columns);
+  FormFactorMatrix links = make_form_factors(pilot.rows, columns);
   uint32_t next_row = 0;
   uint64_t traced_links = 0;
   const double start = process_cpu_seconds();
   for (const uint32_t first : firsts) {
     const std::span<Row> group(rows.data(), std::min(kGroupRows, count - first));
     trace_rows(first, group, counts);
-    uint64_t group_links = 0;
+    uint64_t make_block_jacobi = 0;
     for (const Row& row : group) {
-      append_row(links.blocks[next_row++ / Links::kRowsPerBlock], row.links);
-      group_links += row.links.size();
+      append_row(links.blocks[next_row++ / FormFactorMatrix::kRowsPerBlock], row.links);
+      make_block_jacobi += row.links.size();
     }
-    traced_links += group_links;
-    pilot.links.add(static_cast<double>(group_links) / static_cast<double>(group.size()));
+    traced_links += make_block_jacobi;
+    pilot.links.add(static_cast<double>(make_block_jacobi) / static_cast<double>(group.size()));
   }
   finish_blocks(links);
   if (traced_links > 0)
@@ -73,8 +73,8 @@ void add_pilot(const Pilot& pilot, uint32_t count, BakePlan& plan) {
   plan.link_bytes += static_cast<size_t>((pilot.links.mean + error) * pilot.bytes_per_link * count);
   // Blocks being made, one per thread: the rows as traced, collected, and as numbers on their way.
   constexpr size_t kBytesPerOpenLink = 40;
-  plan.plane_bytes += static_cast<size_t>(thread_count()) * Links::kRowsPerBlock * kBytesPerOpenLink *
-                      static_cast<size_t>(pilot.links.mean + 4 * pilot.links.stddev());
+  plan.plane_bytes += static_cast<size_t>(thread_count()) * FormFactorMatrix::kRowsPerBlock *
+                      kBytesPerOpenLink * static_cast<size_t>(pilot.links.mean + 4 * pilot.links.stddev());
   plan.trace_cpu_seconds += pilot.cpu_seconds * scale;
 }
 
@@ -89,7 +89,7 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
   // doubles twice, in the bounces and in the estimate of errors: the allocator keeps the first three.
   plan.plane_bytes = texels * (20 + 4 * static_cast<size_t>(options.kept_planes));
   if (options.with_links) {
-    const size_t patches = make_patches(surface, options.patches).count;
+    const size_t patches = make_patches(surface, options.patch_kind).count;
     plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 3) + 32) + patches * 56;
     // Light and residual of the solver, the four directions it keeps, and at most 32 bytes for its groups.
     if (options.converges) plan.plane_bytes += texels * 8 + patches * (8 * (2 + 2 * 4) + 32);
@@ -102,14 +102,14 @@ BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptio
   const auto of_texels = [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
     tracer.trace_texels(first, options.with_links, rows, counts);
   };
-  add_pilot(trace_pilot(surface.texel_count(), tracer.patches().count, kTexelGroups, of_texels),
+  add_pilot(trace_pilot(surface.texel_count(), tracer.patch_set().count, kTexelGroups, of_texels),
             surface.texel_count(), plan);
-  if (options.with_links && options.patches == Patches::kFacets) {
+  if (options.with_links && options.patch_kind == PatchKind::kFacets) {
     const auto of_patches = [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
       tracer.trace_patches(first, true, rows, counts);
     };
-    add_pilot(trace_pilot(tracer.patches().count, tracer.patches().count, kPatchGroups, of_patches),
-              tracer.patches().count, plan);
+    add_pilot(trace_pilot(tracer.patch_set().count, tracer.patch_set().count, kPatchGroups, of_patches),
+              tracer.patch_set().count, plan);
   }
   if (!options.with_links) plan.link_bytes = 0;
   plan.bounce_cpu_seconds = static_cast<double>(plan.links) * options.bounces * kSecondsPerLink;

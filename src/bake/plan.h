@@ -29,7 +29,7 @@ struct BakePlan {
 };
 
 struct PlanOptions {
-  Patches patches = Patches::kFacets;
+  PatchKind patch_kind = PatchKind::kFacets;
   bool with_links = true;
   int bounces = 20;
   bool converges = false;

@@ -76,7 +76,7 @@ SampleValues trace_sample(const Tracer& tracer, const std::vector<Block>& blocks
         values.direct[at] = rows[i].direct_over_pi;
         for (size_t a = 0; with_light && a < kTradeAlbedos.size(); ++a) {
           double reflected = 0;
-          for (const Link& link : rows[i].links)
+          for (const FormFactor& link : rows[i].links)
             reflected += static_cast<double>(link.weight) * patches[a][link.patch];
           values.light[a][at] = rows[i].direct_over_pi + kTradeAlbedos[a] * reflected;
         }
@@ -100,8 +100,8 @@ TargetErrors errors_between(const SampleValues& a, const SampleValues& b) {
   return errors;
 }
 
-AlbedoLight light_at(const Visibility& seen, double albedo, std::optional<int> bounces) {
-  const std::vector<float> albedos(seen.patch_links().rows, static_cast<float>(albedo));
+AlbedoLight light_at(const LightTransport& seen, double albedo, std::optional<int> bounces) {
+  const std::vector<float> albedos(seen.bounce_matrix().rows, static_cast<float>(albedo));
   AlbedoOptions options;
   options.bounces = bounces;
   return bounce_with_albedo(seen, albedos, options);
@@ -118,17 +118,17 @@ std::unique_ptr<Tracer> reference_tracer(const Surface& surface, const TargetOpt
                                          uint64_t stream) {
   SliceOptions slices;
   slices.azimuths = reference_azimuths(options.error);
-  slices.patches = options.patches;
+  slices.patch_kind = options.patch_kind;
   slices.seed = mix_bits(options.seed, stream, 1);
   return make_slice_tracer(surface, slices);
 }
 
 // The fewest bounces that leave out at most `allowed` (rms of E/π over texels) at the highest albedo.
-int choose_bounces(const Visibility& rough, double allowed, double& truncation) {
+int choose_bounces(const LightTransport& rough, double allowed, double& truncation) {
   const double albedo = kTradeAlbedos.back();
-  const std::vector<double> whole = light_at(rough, albedo, std::nullopt).texels;
+  const std::vector<double> whole = light_at(rough, albedo, std::nullopt).texel_light;
   const auto left_out = [&](int bounces) {
-    return rms_between(whole, light_at(rough, albedo, bounces).texels);
+    return rms_between(whole, light_at(rough, albedo, bounces).texel_light);
   };
   int low = 0, high = 1;  // low is too few
   while (high < kMostBounces && left_out(high) > allowed) {
@@ -167,10 +167,10 @@ TargetChoice choose_for_target(const Surface& surface, const TargetOptions& opti
   if (options.with_light) {
     const int rough_rays = static_cast<int>(kRoughFactor * options.fewest_rays);
     const auto tracer = options.make_tracer(rough_rays, mix_bits(options.seed, kPilotStream, 2));
-    const Visibility rough = trace_surface(*tracer, surface.width(), surface.height(), options.patches, true);
+    const LightTransport rough = trace_surface(*tracer, true);
     choice.bounces = choose_bounces(rough, kTruncationShare * options.error, choice.truncation);
     for (size_t a = 0; a < kTradeAlbedos.size(); ++a)
-      patches[a] = light_at(rough, kTradeAlbedos[a], std::nullopt).patches;
+      patches[a] = light_at(rough, kTradeAlbedos[a], std::nullopt).patch_light;
   }
 
   const std::vector<Block> blocks = sample_blocks(surface, kPilotBlocks, kPilotStream, options.seed);
@@ -234,14 +234,14 @@ nlohmann::ordered_json json_from_choice(const TargetChoice& choice) {
   return json;
 }
 
-TargetErrors measure_reached(const Surface& surface, const Visibility& seen, int bounces,
+TargetErrors measure_reached(const Surface& surface, const LightTransport& seen, int bounces,
                              const TargetOptions& options) {
   const std::vector<Block> blocks = sample_blocks(surface, kCheckBlocks, kCheckStream, options.seed);
   PatchLight patches;
   std::array<std::vector<double>, kTradeAlbedos.size()> texels;
   for (size_t a = 0; options.with_light && a < kTradeAlbedos.size(); ++a) {
-    patches[a] = light_at(seen, kTradeAlbedos[a], std::nullopt).patches;
-    texels[a] = light_at(seen, kTradeAlbedos[a], bounces).texels;
+    patches[a] = light_at(seen, kTradeAlbedos[a], std::nullopt).patch_light;
+    texels[a] = light_at(seen, kTradeAlbedos[a], bounces).texel_light;
   }
   SampleValues baked;
   for (const Block& block : blocks) {

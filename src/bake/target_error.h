@@ -26,7 +26,7 @@ struct TargetErrors {
 
 struct TargetOptions {
   double error = 0.005;  // wanted of each quantity, above 0
-  Patches patches = Patches::kFacets;
+  PatchKind patch_kind = PatchKind::kFacets;
   bool with_light = true;  // false: α and E₀/π only
   int fewest_rays = 4, most_rays = 1 << 16;
   uint64_t seed = 0;  // of the bake: the pilot takes others
@@ -65,7 +65,7 @@ nlohmann::ordered_json json_from_choice(const TargetChoice& choice);
 
 // The error of a bake: another sample of its texels against slices with many azimuths. seen: the bake's, with
 // links where options.with_light. The patches' own noise is in both and only seen through the texels' sums.
-TargetErrors measure_reached(const Surface& surface, const Visibility& seen, int bounces,
+TargetErrors measure_reached(const Surface& surface, const LightTransport& seen, int bounces,
                              const TargetOptions& options);
 
 }  // namespace hemibake

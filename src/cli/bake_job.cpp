@@ -26,7 +26,7 @@ constexpr size_t kTexelsNamed = 5;         // of those that did not converge
 
 PlanOptions plan_options(const BakeJob& job) {
   PlanOptions plan;
-  plan.patches = patches_of(job.options);
+  plan.patch_kind = patches_of(job.options);
   plan.with_links = job.options.needs_links();
   plan.bounces = job.options.wants("irradiance") ? job.options.bounces : 0;
   plan.converges = job.options.converge.has_value();
@@ -58,7 +58,7 @@ Provenance provenance_of(const BakeOptions& options, const Surface& surface) {
   p["cone_degrees"] = options.cone_degrees;
   if (options.max_distance_m) p["max_distance_m"] = *options.max_distance_m;
   p["seed"] = options.seed;
-  p["patches"] = options.patches;
+  p["patches"] = options.patch_kind;
   if (options.tracer == "march") {
     p["max_steps"] = options.max_steps;
     p["lift_percent"] = options.lift_percent;
@@ -68,7 +68,7 @@ Provenance provenance_of(const BakeOptions& options, const Surface& surface) {
     p["normal_length"] = options.normal_length;
   }
   if (options.tracer == "embree") p["directions"] = options.directions;
-  if (options.tracer != "march" && options.patches == "texels") p["texel_links"] = options.texel_links;
+  if (options.tracer != "march" && options.patch_kind == "texels") p["texel_links"] = options.texel_links;
   p["outputs"] = fmt::format("{}", fmt::join(options.outputs, ","));
   p["bounces"] = options.bounces;
   if (options.converge) {
@@ -78,10 +78,10 @@ Provenance provenance_of(const BakeOptions& options, const Surface& surface) {
   return p;
 }
 
-void record_tracing(const Visibility& seen, Provenance& p) {
+void record_tracing(const LightTransport& seen, Provenance& p) {
   p["rays_traced"] = seen.counts.rays;
-  p["rays_cut_short"] = seen.counts.cut_short;
-  if (!seen.gather.empty()) p["links"] = seen.gather.count() + seen.patches.count();
+  p["rays_cut_short"] = seen.counts.truncated;
+  if (!seen.final_gather.empty()) p["links"] = seen.final_gather.count() + seen.patch_form_factors.count();
 }
 
 void record_link_energy(const LinkEnergy& energy, Provenance& p) {
@@ -95,8 +95,8 @@ void record_bounces(const Bounces& bounces, Provenance& p) {
   p["bounces_made"] = bounces.bounces_made;
   p["mean_residual"] = bounces.mean_residual;
   p["worst_residual"] = bounces.worst_residual;
-  p["texels_short"] = bounces.texels_short.size();
-  p["texels_closed"] = bounces.texels_closed.size();
+  p["texels_short"] = bounces.unconverged_texels.size();
+  p["texels_closed"] = bounces.enclosed_texels.size();
 }
 
 void record_errors(const ErrorEstimate& errors, Provenance& p) {
@@ -127,7 +127,7 @@ std::string describe_errors(const ErrorEstimate& e) {
 TargetOptions target_options(const BakeJob& job) {
   TargetOptions target;
   target.error = *job.options.target_error;
-  target.patches = patches_of(job.options);
+  target.patch_kind = patches_of(job.options);
   target.with_light = job.options.needs_links() && job.options.wants("irradiance");
   if (job.options.tracer == "embree") target.fewest_rays = 16;
   target.seed = job.options.seed;
@@ -162,25 +162,26 @@ std::string name_texels(const std::vector<uint32_t>& texels, int width) {
   return names + (texels.size() > kTexelsNamed ? " …" : "");
 }
 
-std::vector<std::string> warnings_of(const BakeOptions& options, const Visibility& seen,
+std::vector<std::string> warnings_of(const BakeOptions& options, const LightTransport& seen,
                                      const Bounces& bounces) {
   std::vector<std::string> warnings;
   const int width = seen.direct_over_pi.width;
-  if (!bounces.texels_short.empty())
+  if (!bounces.unconverged_texels.empty())
     warnings.push_back(fmt::format("{} texels are short of {:g} after {} bounces, the worst by {:.3g}:{}",
-                                   bounces.texels_short.size(), *options.converge, bounces.bounces_made,
-                                   bounces.worst_residual, name_texels(bounces.texels_short, width)));
-  if (!bounces.texels_closed.empty())
+                                   bounces.unconverged_texels.size(), *options.converge, bounces.bounces_made,
+                                   bounces.worst_residual, name_texels(bounces.unconverged_texels, width)));
+  if (!bounces.enclosed_texels.empty())
     warnings.push_back(fmt::format("{} texels see only themselves and never fill:{}",
-                                   bounces.texels_closed.size(), name_texels(bounces.texels_closed, width)));
-  if (seen.counts.cut_short > 0)
+                                   bounces.enclosed_texels.size(),
+                                   name_texels(bounces.enclosed_texels, width)));
+  if (seen.counts.truncated > 0)
     warnings.push_back(
         fmt::format("{} of {} rays were followed to the far limit below the highest texel and taken for sky",
-                    seen.counts.cut_short, seen.counts.rays));
+                    seen.counts.truncated, seen.counts.rays));
   return warnings;
 }
 
-void store_planes(const BakeOptions& options, const Surface& surface, Visibility& seen, Bounces& bounces,
+void store_planes(const BakeOptions& options, const Surface& surface, LightTransport& seen, Bounces& bounces,
                   Bake& bake) {
   bake.width = surface.width();
   bake.height = surface.height();
@@ -225,14 +226,14 @@ BakeResult perform_bake(const BakeJob& job) {
   BakeResult result;
   result.provenance = provenance_of(options, job.map.surface);
 
-  Visibility seen = trace_surface(*job.tracer, job.map.surface.width(), job.map.surface.height(),
-                                  patches_of(options), options.needs_links(),
-                                  job.plan.spills ? std::make_shared<SpillFile>(job.spill_folder) : nullptr);
+  LightTransport seen =
+      trace_surface(*job.tracer, options.needs_links(),
+                    job.plan.spills ? std::make_shared<SpillFile>(job.spill_folder) : nullptr);
   result.rays = seen.counts.rays;
   result.trace_cpu_seconds = process_cpu_seconds() - cpu_start;
   record_tracing(seen, result.provenance);
-  if (!seen.gather.empty()) {
-    result.link_energy = measure_link_energy(job.map.surface, job.tracer->patches(), seen);
+  if (!seen.final_gather.empty()) {
+    result.link_energy = measure_link_energy(job.map.surface, job.tracer->patch_set(), seen);
     record_link_energy(*result.link_energy, result.provenance);
   }
 
@@ -242,7 +243,7 @@ BakeResult perform_bake(const BakeJob& job) {
                   ? bounce_light(seen, {options.bounces, options.converge, options.max_bounces})
                   : direct_light(seen);
     record_bounces(bounces, result.provenance);
-    if (!seen.gather.empty() && bounces.irradiance.size() > 1) {
+    if (!seen.final_gather.empty() && bounces.irradiance.size() > 1) {
       result.errors = estimate_errors(*job.tracer->reseeded(options.seed + kAnotherSeed), seen, bounces);
       record_errors(*result.errors, result.provenance);
     }
@@ -252,7 +253,8 @@ BakeResult perform_bake(const BakeJob& job) {
     record_reached(options, *result.reached, result.provenance);
   }
   if (!options.links.empty())
-    write_links(options.links, seen.gather, seen.patches.empty() ? nullptr : &seen.patches,
+    write_links(options.links, seen.final_gather,
+                seen.patch_form_factors.empty() ? nullptr : &seen.patch_form_factors,
                 irradiance_of(seen.patch_direct()), result.provenance);
   result.warnings = warnings_of(options, seen, bounces);
   store_planes(options, job.map.surface, seen, bounces, result.bake);
@@ -266,7 +268,7 @@ std::string describe_bake(const BakeJob& job, const BakeResult& result) {
   const double million_rays = 1e-6 * static_cast<double>(result.rays);
   std::string text = fmt::format("{}: {}x{} texels, {:g} m, amplitude {:g} m, {} edges, {} patches\n",
                                  job.options.map.string(), bake.width, bake.height, job.options.size_m,
-                                 job.options.amplitude_m, job.options.edge, job.options.patches);
+                                 job.options.amplitude_m, job.options.edge, job.options.patch_kind);
   text += fmt::format("rays      {:.1f} M in {:.1f} s ({:.1f} cpu-s, {:.2f} Mray/cpu-s)", million_rays,
                       result.seconds, result.cpu_seconds, million_rays / result.trace_cpu_seconds);
   if (result.provenance.contains("links"))

@@ -6,15 +6,15 @@
 #include <optional>
 #include <string>
 
+#include "bake/energy.h"
+#include "bake/error_estimate.h"
+#include "bake/plan.h"
+#include "bake/target_error.h"
 #include "cli/bake_options.h"
 #include "cli/bake_surface.h"
 #include "io/provenance.h"
 #include "tracers/tracer.h"
-#include "bake/target_error.h"
 #include "transport/baked_planes.h"
-#include "bake/energy.h"
-#include "bake/error_estimate.h"
-#include "bake/plan.h"
 
 namespace hemibake {
 

@@ -154,7 +154,7 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
       ->capture_default_str()
       ->group("March");
 
-  app.add_option("--patches", options.patches,
+  app.add_option("--patches", options.patch_kind,
                  "what re-emits light: the surface's triangles (default), or the texels (as published in "
                  "2018; the only ones of march)")
       ->check(CLI::IsMember({"facets", "texels"}))
@@ -230,7 +230,7 @@ void settle_bake_options(const CLI::App& app, BakeOptions& options) {
   }
   if (options.directions.empty()) options.directions = "uniform";
   if (options.rays == 0) options.rays = options.tracer == "slice" ? kDefaultAzimuths : kDefaultRays;
-  if (options.patches.empty()) options.patches = options.tracer == "march" ? "texels" : "facets";
+  if (options.patch_kind.empty()) options.patch_kind = options.tracer == "march" ? "texels" : "facets";
 
   if (options.target_error) {
     if (options.tracer == "march")
@@ -245,7 +245,7 @@ void settle_bake_options(const CLI::App& app, BakeOptions& options) {
   } else if (options.explain) {
     throw InputError("--explain: explains --target-error, expected it too");
   }
-  if (options.tracer == "march" && options.patches == "facets")
+  if (options.tracer == "march" && options.patch_kind == "facets")
     throw InputError("--patches: a march knows no facets, expected texels with --tracer march");
   if (options.tracer == "slice" && options.rays > kMaxAzimuths)
     throw InputError(fmt::format("--rays: {} azimuths, expected at most {} with --tracer slice", options.rays,
@@ -282,7 +282,7 @@ RayOptions ray_options(const BakeOptions& options) {
   rays.cone_degrees = options.cone_degrees;
   if (options.max_distance_m) rays.max_distance_m = *options.max_distance_m;
   rays.directions = options.directions == "cosine" ? DirectionSet::kCosine : DirectionSet::kUniform;
-  rays.patches = patches_of(options);
+  rays.patch_kind = patches_of(options);
   rays.texel_links = options.texel_links == "nearest" ? TexelLinks::kNearest : TexelLinks::kBilinear;
   rays.seed = options.seed;
   return rays;
@@ -292,7 +292,7 @@ SliceOptions slice_options(const BakeOptions& options) {
   SliceOptions slice;
   slice.azimuths = options.rays;
   if (options.max_distance_m) slice.max_distance_m = *options.max_distance_m;
-  slice.patches = patches_of(options);
+  slice.patch_kind = patches_of(options);
   slice.texel_links = ray_options(options).texel_links;
   slice.seed = options.seed;
   return slice;
@@ -318,8 +318,8 @@ MarchOptions march_options(const BakeOptions& options) {
   return march;
 }
 
-Patches patches_of(const BakeOptions& options) {
-  return options.patches == "facets" ? Patches::kFacets : Patches::kTexels;
+PatchKind patches_of(const BakeOptions& options) {
+  return options.patch_kind == "facets" ? PatchKind::kFacets : PatchKind::kTexels;
 }
 
 Edge edge_of(const BakeOptions& options) { return options.edge == "wrap" ? Edge::kWrap : Edge::kOpen; }

@@ -34,7 +34,7 @@ struct BakeOptions {
   int rays = 0;        // 0: what serves most maps
   double cone_degrees = 180;
   std::string directions;  // empty: uniform
-  std::string patches;     // empty: what the tracer has (facets, where it has both)
+  std::string patch_kind;  // empty: what the tracer has (facets, where it has both)
   std::string texel_links = "bilinear";
   std::optional<double> max_distance_m;
   std::optional<double> target_error;  // chooses rays and bounces
@@ -81,7 +81,7 @@ SliceOptions slice_options(const BakeOptions& options);
 FilterOptions filter_options(const BakeOptions& options);
 // Without what only the map knows (MarchOptions::lowest_m, normal_lengths).
 MarchOptions march_options(const BakeOptions& options);
-Patches patches_of(const BakeOptions& options);
+PatchKind patches_of(const BakeOptions& options);
 Edge edge_of(const BakeOptions& options);
 
 }  // namespace hemibake

@@ -42,7 +42,7 @@ std::filesystem::path find_input(const Provenance& provenance, const char* path_
 BakeMap load_bake_map(const BakeOptions& options) {
   BakeMap map;
   Grid<float> heights = read_height_map(options.map, options.channel);
-  map.surface = name_file(options.map, [&] {
+  map.surface = with_file_context(options.map, [&] {
     if (options.filter_radius > 0)
       heights = bilateral_filter(heights, filter_options(options), edge_of(options));
     map.lowest_m = options.amplitude_m * static_cast<double>(*std::ranges::min_element(heights.values));
@@ -52,7 +52,8 @@ BakeMap load_bake_map(const BakeOptions& options) {
   if (!options.normal_map.empty()) {
     const auto encoded = read_normal_map(options.normal_map, surface.width(), surface.height());
     const NormalY convention = options.normal_y == "up" ? NormalY::kUp : NormalY::kDown;
-    surface.normals = name_file(options.normal_map, [&] { return decode_normal_map(encoded, convention); });
+    surface.normals =
+        with_file_context(options.normal_map, [&] { return decode_normal_map(encoded, convention); });
     if (options.normal_length == "stored") map.normal_lengths = normal_map_lengths(encoded);
   } else if (options.normals_from == "faces") {
     surface.normals = angle_weighted_normals(surface);

@@ -44,7 +44,8 @@ constexpr std::array kCommands = {
             setup_render},
     Command{"check", "check that light is neither made nor lost", setup_check},
     Command{"run", "bake, curves, fit and check in one go", setup_run},
-    Command{"trade", "what every method costs and how far off it is, against a converged reference", setup_trade},
+    Command{"trade", "what every method costs and how far off it is, against a converged reference",
+            setup_trade},
     Command{"report", "one self-contained HTML page of what 'run' wrote", setup_report},
 };
 

@@ -27,7 +27,7 @@ int run_curves(const CurvesOptions& options) {
   apply_common_options(options.common);
   check_output_path(options.output, {".csv"});
   const Bake bake = read_bake(options.bake).bake;
-  const Curves curves = name_file(options.bake, [&] { return make_curves(bake, options.bins); });
+  const Curves curves = with_file_context(options.bake, [&] { return make_curves(bake, options.bins); });
   write_curves(options.output, curves);
 
   const auto populated = std::count_if(curves.bins.begin(), curves.bins.end(),

@@ -9,8 +9,8 @@
 
 #include "cli/commands.h"
 #include "cli/common_options.h"
-#include "io/fit_file.h"
 #include "fitting/fitted_model.h"
+#include "io/fit_file.h"
 #include "io/model_table.h"
 #include "io/output_file.h"
 #include "model/shader_text.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "bake/energy.h"
 #include "cli/name_file.h"
 #include "core/error.h"
 #include "curves/check_curves.h"
@@ -13,7 +14,6 @@
 #include "io/output_file.h"
 #include "model/check_model.h"
 #include "model/model.h"
-#include "bake/energy.h"
 
 namespace hemibake {
 namespace {
@@ -115,7 +115,7 @@ Checks checks_of_file(const std::filesystem::path& path, std::optional<double> t
   const std::string extension = lower_case_extension(path);
   if (extension == ".exr") {
     const BakeFile file = read_bake(path);
-    const Checks checks = name_file(path, [&] { return checks_of_bake(file, tolerance); });
+    const Checks checks = with_file_context(path, [&] { return checks_of_bake(file, tolerance); });
     if (checks.empty())
       throw InputError(path.string() + ": holds no irradiance, expected some: nothing else is checked");
     return checks;

@@ -62,7 +62,7 @@ int run_fit(const FitOptions& options) {
   const Curves curves = pool_curves(sets);
   const std::string names = fmt::format("{}", fmt::join(options.curves, ", "));
   FitFile file;
-  name_file(names, [&] {
+  with_file_context(names, [&] {
     for (const std::string& model : options.models) {
       for (NamedFit& named : fit_model(model, curves, abscissa, weights))
         file.fits.push_back(std::move(named));

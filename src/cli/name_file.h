@@ -9,7 +9,7 @@ namespace hemibake {
 
 // work(), with "FILE: " put before the message of an InputError or CheckError.
 template <class Work>
-auto name_file(const std::filesystem::path& path, Work work) {
+auto with_file_context(const std::filesystem::path& path, Work work) {
   try {
     return work();
   } catch (const InputError& error) {

@@ -59,7 +59,7 @@ nlohmann::ordered_json json_from_referee(const RefereeCheck& check) {
           {"texels", check.texels},
           {"paths_per_texel", check.paths_per_texel},
           {"rays", check.rays},
-          {"lost_rays", check.lost_rays},
+          {"lost_rays", check.truncated_rays},
           {"means", rows_of(check.means)},
           {"bins", rows_of(check.bins)}};
 }

@@ -38,7 +38,7 @@ void remove_earlier_pictures(const fs::path& folder) {
   }
 }
 
-nlohmann::ordered_json errors_of(const ShadedWall& shaded) {
+nlohmann::ordered_json errors_of(const SceneImages& shaded) {
   nlohmann::ordered_json errors = nlohmann::ordered_json::object();
   if (shaded.truth.empty()) return errors;
   if (!shaded.ao_only.empty())
@@ -47,7 +47,8 @@ nlohmann::ordered_json errors_of(const ShadedWall& shaded) {
   return errors;
 }
 
-void draw(const RenderOptions& options, const Wall& wall, const ShadedWall& shaded, Gallery& gallery) {
+void draw(const RenderOptions& options, const ShadedScene& wall, const SceneImages& shaded,
+          Gallery& gallery) {
   if (options.wants("light")) add_triptych(wall, shaded, gallery);
   if (options.wants("differences")) add_differences(shaded, gallery);
   if (options.wants("bounces")) add_bounces(wall, options.picture, gallery);
@@ -55,7 +56,7 @@ void draw(const RenderOptions& options, const Wall& wall, const ShadedWall& shad
   if (options.wants("planes")) add_planes(wall, gallery);
   if (options.wants("estimators")) add_estimators(wall, gallery);
   if (options.wants("views")) add_views(wall, shaded, options.picture, gallery);
-  if (!has_font()) gallery.say_missing("captions", "no font was found, expected fonts-dejavu-core");
+  if (!has_font()) gallery.report_missing("captions", "no font was found, expected fonts-dejavu-core");
 }
 
 std::string describe(const RenderOptions& options, const nlohmann::ordered_json& json,
@@ -77,8 +78,8 @@ int run_render(RenderOptions& options) {
   const ResultFolder folder(options.folder);
   check_output_path(options.folder / kRecord);
 
-  const RenderedWall rendered = light_wall(options, std::move(file));
-  const ShadedWall shaded = shade_wall(rendered.wall, options.picture);
+  const RenderedScene rendered = shade_scene(options, std::move(file));
+  const SceneImages shaded = make_scene_images(rendered.wall, options.picture);
   remove_earlier_pictures(options.folder);
   Gallery gallery(options.folder, provenance);
   draw(options, rendered.wall, shaded, gallery);

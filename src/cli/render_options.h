@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cli/common_options.h"
-#include "pictures/pictures.h"
 #include "lighting/sky.h"
+#include "pictures/pictures.h"
 
 namespace CLI {
 class App;

@@ -9,16 +9,16 @@
 #include "cli/bake_surface.h"
 #include "cli/name_file.h"
 #include "cli/retrace.h"
+#include "core/color.h"
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/interrupt.h"
 #include "curves/curves.h"
+#include "fitting/fitted_model.h"
 #include "fitting/models.h"
 #include "io/fit_file.h"
-#include "fitting/fitted_model.h"
 #include "io/image_io.h"
 #include "io/table_io.h"
-#include "core/color.h"
 #include "lighting/sky_light.h"
 
 namespace hemibake {
@@ -118,15 +118,15 @@ void add_sun(const std::vector<double>& share, double irradiance, std::vector<gl
 
 // The sky before any bounce, at every texel and every patch.
 ColoredLight sky_light(const RenderOptions& options, const Sky& sky, const Surface& surface,
-                       const PatchSet& patches, const Visibility& seen) {
+                       const PatchSet& patches, const LightTransport& seen) {
   if (sky.uniform) return {uniform_light(seen.direct_over_pi.values), uniform_light(seen.patch_direct())};
   const SkyLightOptions rays{options.sky_rays, 0, sky.mean_radiance()};
   const Radiance radiance = [&](const glm::dvec3& d) { return sky.radiance(d); };
   ColoredLight light;
-  light.texels = sky_light_of_texels(surface, seen.direct_over_pi.values, radiance, rays);
-  light.patches = seen.patches.empty()
-                      ? light.texels
-                      : sky_light_of_patches(surface, patches, seen.patch_direct(), radiance, rays);
+  light.texel_light = sky_light_of_texels(surface, seen.direct_over_pi.values, radiance, rays);
+  light.patch_light = seen.patch_form_factors.empty()
+                          ? light.texel_light
+                          : sky_light_of_patches(surface, patches, seen.patch_direct(), radiance, rays);
   return light;
 }
 
@@ -138,7 +138,7 @@ Grid<glm::vec3> as_grid(const std::vector<glm::dvec3>& light, const Surface& sur
 
 // What nine coefficients of the sky are off by where the surface hides parts of it: E₀ of the texels under
 // the projection against that under the sky itself.
-PictureError error_of_projection(const Sky& sky, const Surface& surface, const Visibility& seen, int rays,
+PictureError error_of_projection(const Sky& sky, const Surface& surface, const LightTransport& seen, int rays,
                                  const std::vector<glm::dvec3>& traced) {
   const auto projected =
       sky_light_of_texels(surface, seen.direct_over_pi.values,
@@ -149,28 +149,28 @@ PictureError error_of_projection(const Sky& sky, const Surface& surface, const V
 
 // Sends sky and sun round over the links of the bake.
 void relight(const RenderOptions& options, const BakeFile& file, const BakeOptions& tracing, const Sky& sky,
-             const std::optional<Sun>& sun, RenderedWall& result) {
-  Wall& wall = result.wall;
+             const std::optional<Sun>& sun, RenderedScene& result) {
+  ShadedScene& wall = result.wall;
   const Surface& surface = *wall.surface;
-  const Visibility seen =
+  const LightTransport seen =
       options.links.empty() ? retrace(tracing) : visibility_from_links(options.links, file);
-  const bool on_facets = !seen.patches.empty();
-  const PatchSet patches = make_patches(surface, on_facets ? Patches::kFacets : Patches::kTexels);
-  if (seen.gather.columns != patches.count)
+  const bool on_facets = !seen.patch_form_factors.empty();
+  const PatchSet patches = make_patches(surface, on_facets ? PatchKind::kFacets : PatchKind::kTexels);
+  if (seen.final_gather.columns != patches.count)
     throw InputError(fmt::format("{}: has {} patches, expected {} as this version makes of the map",
-                                 options.links.string(), seen.gather.columns, patches.count));
+                                 options.links.string(), seen.final_gather.columns, patches.count));
   ColoredLight light = sky_light(options, sky, surface, patches, seen);
   if (!sky.lat_long.empty())
     result.light["sky_projected_against_traced"] =
-        json_from_error(error_of_projection(sky, surface, seen, options.sky_rays, light.texels));
+        json_from_error(error_of_projection(sky, surface, seen, options.sky_rays, light.texel_light));
   if (sun) {
     const std::vector<double> share = sun_share_of_texels(surface, sun->direction);
     std::vector<glm::dvec3> irradiance(share.size());
     add_sun(share, sun->irradiance, irradiance);
     wall.sun = as_grid(irradiance, surface);
-    add_sun(share, sun->irradiance, light.texels);
+    add_sun(share, sun->irradiance, light.texel_light);
     add_sun(on_facets ? sun_share_of_patches(surface, patches, sun->direction) : share, sun->irradiance,
-            light.patches);
+            light.patch_light);
   }
   const size_t stored = file.bake.irradiance.size();
   wall.truth = relight_over_links(seen, light, albedo_of_patches(surface, wall.albedo, patches),
@@ -184,9 +184,9 @@ nlohmann::ordered_json json_from_error(const PictureError& error) {
   return {{"bias_over_mean", error.bias}, {"rms_over_mean", error.rms}, {"largest_over_mean", error.largest}};
 }
 
-RenderedWall light_wall(const RenderOptions& options, BakeFile file) {
-  RenderedWall result;
-  Wall& wall = result.wall;
+RenderedScene shade_scene(const RenderOptions& options, BakeFile file) {
+  RenderedScene result;
+  ShadedScene& wall = result.wall;
   nlohmann::ordered_json& light = result.light;
   const Bake& bake = file.bake;
   wall.albedo = read_albedo(options, bake);

@@ -9,8 +9,8 @@
 
 namespace hemibake {
 
-struct RenderedWall {
-  Wall wall;
+struct RenderedScene {
+  ShadedScene wall;
   nlohmann::ordered_json light;  // how it was lit, and how well that is known
 };
 
@@ -18,6 +18,6 @@ nlohmann::ordered_json json_from_error(const PictureError& error);
 
 // Reads what the options name. Finds the map of the bake where it can; throws InputError where light asked
 // for needs the map and it is not there, and for everything that cannot be used.
-RenderedWall light_wall(const RenderOptions& options, BakeFile file);
+RenderedScene shade_scene(const RenderOptions& options, BakeFile file);
 
 }  // namespace hemibake

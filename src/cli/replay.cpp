@@ -39,7 +39,7 @@ std::string describe_replay(const Replay& replay) {
                 : "sky\n";
   }
   double sum = 0;
-  for (const Link& link : replay.row.links) {
+  for (const FormFactor& link : replay.row.links) {
     text += fmt::format("link to patch {:8} weight {:.8f}\n", link.patch, link.weight);
     sum += static_cast<double>(link.weight);
   }
@@ -64,7 +64,8 @@ nlohmann::ordered_json json_from_replay(const Replay& replay) {
     }
     rays.push_back(std::move(record));
   }
-  for (const Link& link : replay.row.links) links.push_back({{"patch", link.patch}, {"weight", link.weight}});
+  for (const FormFactor& link : replay.row.links)
+    links.push_back({{"patch", link.patch}, {"weight", link.weight}});
   return {{"texel", {replay.x, replay.y}},
           {"height_m", replay.height_m},
           {"normal", vector(replay.normal)},

@@ -38,7 +38,7 @@ int run_report(ReportOptions options) {
 
   const Bake bake = folder.bake ? folder.bake->bake : Bake{};
   const PackedPlanes planes =
-      name_file(options.folder / "bake.exr", [&] { return pack_planes(bake, options.image_size); });
+      with_file_context(options.folder / "bake.exr", [&] { return pack_planes(bake, options.image_size); });
   const std::vector<ReportModel> models = report_models(folder);
   const Rgb albedo = {options.albedo[0], options.albedo[1], options.albedo[2]};
   const std::string page =

@@ -27,7 +27,7 @@ BakeOptions tracing_options_from(const BakeFile& file, const std::filesystem::pa
     options.rays = p.at("rays").get<int>();
     options.cone_degrees = p.at("cone_degrees").get<double>();
     options.seed = p.at("seed").get<uint64_t>();
-    options.patches = p.at("patches").get<std::string>();
+    options.patch_kind = p.at("patches").get<std::string>();
     if (p.contains("max_distance_m")) options.max_distance_m = p["max_distance_m"].get<double>();
     take(p, "directions", options.directions);
     take(p, "texel_links", options.texel_links);
@@ -44,14 +44,13 @@ BakeOptions tracing_options_from(const BakeFile& file, const std::filesystem::pa
   return options;
 }
 
-Visibility retrace(const BakeOptions& options) {
+LightTransport retrace(const BakeOptions& options) {
   BakeJob job;
   prepare_bake(options, false, job);
-  return trace_surface(*job.tracer, job.map.surface.width(), job.map.surface.height(), patches_of(options),
-                       true);
+  return trace_surface(*job.tracer, true);
 }
 
-Visibility visibility_from_links(const std::filesystem::path& links_path, const BakeFile& file) {
+LightTransport visibility_from_links(const std::filesystem::path& links_path, const BakeFile& file) {
   LinksFile links = read_links(links_path);
   const Bake& bake = file.bake;
   const auto refuse = [&](const std::string& what) {
@@ -62,22 +61,24 @@ Visibility visibility_from_links(const std::filesystem::path& links_path, const 
   };
   if (input(links.provenance) != input(file.provenance)) refuse("is of another map");
   const uint64_t texels = static_cast<uint64_t>(bake.width) * static_cast<uint64_t>(bake.height);
-  if (links.gather.rows != texels)
-    refuse(fmt::format("has {} texels, the bake {}", links.gather.rows, texels));
-  const uint32_t patches = links.patches ? links.patches->rows : links.gather.rows;
-  if (links.gather.columns != patches || (links.patches && links.patches->columns != patches) ||
+  if (links.final_gather.rows != texels)
+    refuse(fmt::format("has {} texels, the bake {}", links.final_gather.rows, texels));
+  const uint32_t patches =
+      links.patch_form_factors ? links.patch_form_factors->rows : links.final_gather.rows;
+  if (links.final_gather.columns != patches ||
+      (links.patch_form_factors && links.patch_form_factors->columns != patches) ||
       links.direct.size() != patches)
     refuse("its matrices do not fit each other");
 
-  Visibility seen;
+  LightTransport seen;
   seen.direct_over_pi = Grid<float>(bake.width, bake.height);
-  const std::vector<double> blocked = row_sums(links.gather);
+  const std::vector<double> blocked = row_sums(links.final_gather);
   for (size_t i = 0; i < seen.direct_over_pi.size(); ++i)
     seen.direct_over_pi[i] = static_cast<float>(
         bake.irradiance.empty() ? 1 - blocked[i] : static_cast<double>(bake.irradiance[0][i]) / kPi);
-  seen.gather = std::move(links.gather);
-  if (!links.patches) return seen;
-  seen.patches = std::move(*links.patches);
+  seen.final_gather = std::move(links.final_gather);
+  if (!links.patch_form_factors) return seen;
+  seen.patch_form_factors = std::move(*links.patch_form_factors);
   for (const float direct : links.direct)
     seen.patch_direct_over_pi.push_back(static_cast<float>(static_cast<double>(direct) / kPi));
   return seen;

@@ -14,9 +14,9 @@ BakeOptions tracing_options_from(const BakeFile& file, const std::filesystem::pa
 
 // Traces the bake's map again with its own options, links and all: the same rows, byte for byte. Throws
 // InputError where that takes more memory than the machine has.
-Visibility retrace(const BakeOptions& options);
+LightTransport retrace(const BakeOptions& options);
 
 // The same from a links file of this bake. Throws InputError where it is of another.
-Visibility visibility_from_links(const std::filesystem::path& links_path, const BakeFile& file);
+LightTransport visibility_from_links(const std::filesystem::path& links_path, const BakeFile& file);
 
 }  // namespace hemibake

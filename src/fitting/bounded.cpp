@@ -1,7 +1,7 @@
 #include "fitting/bounded.h"
 
-#include "model/closed_forms.h"
 #include "fitting/least_squares.h"
+#include "model/closed_forms.h"
 
 namespace hemibake {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "core/constants.h"
-#include "model/closed_forms.h"
 #include "fitting/bounded.h"
 #include "fitting/least_squares.h"
 #include "fitting/published.h"
+#include "model/closed_forms.h"
 
 namespace hemibake {
 namespace {

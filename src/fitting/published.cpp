@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "model/closed_forms.h"
 #include "fitting/least_squares.h"
+#include "model/closed_forms.h"
 
 namespace hemibake {
 

@@ -85,7 +85,7 @@ class Reader {
  public:
   explicit Reader(const fs::path& path) : path_(path) {
     check_regular_file(path);
-    if (const std::string complaint = complaint_about_png(path); !complaint.empty()) refuse(path, complaint);
+    if (const std::string complaint = png_error(path); !complaint.empty()) refuse(path, complaint);
     OIIO::attribute("threads", thread_count());
     OIIO::attribute("exr_threads", thread_count());
     OIIO::ImageSpec hints;

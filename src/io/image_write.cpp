@@ -96,8 +96,7 @@ void check_values(int width, int height, std::span<const Plane> planes, Usable u
       const float value = plane.first[i * plane.stride];
       if (usable(value)) continue;
       const auto columns = static_cast<size_t>(width);
-      refuse(
-          fmt::format("channel {} is {} at texel {},{}", plane.channel, value, i % columns, i / columns));
+      refuse(fmt::format("channel {} is {} at texel {},{}", plane.channel, value, i % columns, i / columns));
     }
 }
 

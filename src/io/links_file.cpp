@@ -99,7 +99,7 @@ class Appender {
   hsize_t position_ = 0;
 };
 
-void write_matrix(hid_t file, const char* name, const Links& links) {
+void write_matrix(hid_t file, const char* name, const FormFactorMatrix& links) {
   Hdf5Handle group(H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
   const std::array<uint64_t, 2> shape{links.rows, links.columns};
   write_attribute(group.id(), "shape", H5T_NATIVE_UINT64, make_space(shape.size()), shape.data());
@@ -110,14 +110,14 @@ void write_matrix(hid_t file, const char* name, const Links& links) {
   row_begins.append(&position, 1);
   std::vector<uint64_t> ends;
   BlockRows rows;
-  for (const LinkBlock& block : links.blocks) {
+  for (const FormFactorBlock& block : links.blocks) {
     throw_if_interrupted();
     unpack_block(block, rows);
     ends.assign(rows.row_begin.begin() + 1, rows.row_begin.end());
     for (uint64_t& end : ends) end += position;
-    position += rows.patches.size();
+    position += rows.columns.size();
     row_begins.append(ends.data(), ends.size());
-    indices.append(rows.patches.data(), rows.patches.size());
+    indices.append(rows.columns.data(), rows.columns.size());
     weights.append(rows.weights.data(), rows.weights.size());
   }
   row_begins.close();
@@ -126,10 +126,10 @@ void write_matrix(hid_t file, const char* name, const Links& links) {
   group.close();
 }
 
-void check_rows(const Links& links, const std::string& name) {
-  expect_equal(links.blocks.size(), make_links(links.rows, 0).blocks.size(), "blocks of " + name);
+void check_rows(const FormFactorMatrix& links, const std::string& name) {
+  expect_equal(links.blocks.size(), make_form_factors(links.rows, 0).blocks.size(), "blocks of " + name);
   uint64_t rows = 0;
-  for (const LinkBlock& block : links.blocks) rows += block.rows;
+  for (const FormFactorBlock& block : links.blocks) rows += block.rows;
   expect_equal(rows, uint64_t{links.rows}, "rows of " + name);
 }
 
@@ -201,7 +201,7 @@ std::array<uint64_t, 2> read_shape(hid_t group, const std::string& name) {
 
 // Row begins relative to the block, from absolute ends.
 void set_row_begins(BlockRows& rows, const std::vector<uint64_t>& ends, uint64_t position, uint64_t first_row,
-                    const Links& links, uint64_t count, const std::string& name) {
+                    const FormFactorMatrix& links, uint64_t count, const std::string& name) {
   rows.row_begin.assign(1, 0);
   uint64_t previous = position;
   for (size_t row = 0; row < ends.size(); ++row) {
@@ -214,31 +214,32 @@ void set_row_begins(BlockRows& rows, const std::vector<uint64_t>& ends, uint64_t
   }
 }
 
-void check_block(const BlockRows& rows, uint64_t first_row, const Links& links, const std::string& name) {
-  for (const uint32_t patch : rows.patches)
+void check_block(const BlockRows& rows, uint64_t first_row, const FormFactorMatrix& links,
+                 const std::string& name) {
+  for (const uint32_t patch : rows.columns)
     if (patch >= links.columns)
       refuse(fmt::format("a link of {} goes to patch {} of {}", name, patch, links.columns));
   for (const float weight : rows.weights)
     if (!(std::isfinite(weight) && weight >= 0)) refuse(fmt::format("a weight of {} is {}", name, weight));
   for (size_t row = 0; row + 1 < rows.row_begin.size(); ++row)
     for (uint32_t k = rows.row_begin[row] + 1; k < rows.row_begin[row + 1]; ++k)
-      if (rows.patches[k] <= rows.patches[k - 1])
+      if (rows.columns[k] <= rows.columns[k - 1])
         refuse(fmt::format("in row {} of {} patch {} follows patch {}", first_row + row, name,
-                           rows.patches[k], rows.patches[k - 1]));
+                           rows.columns[k], rows.columns[k - 1]));
 }
 
-void pack_rows(const BlockRows& rows, Links& links, size_t index) {
-  std::vector<Link> row;
+void pack_rows(const BlockRows& rows, FormFactorMatrix& links, size_t index) {
+  std::vector<FormFactor> row;
   for (size_t i = 0; i + 1 < rows.row_begin.size(); ++i) {
     row.clear();
     for (uint32_t k = rows.row_begin[i]; k < rows.row_begin[i + 1]; ++k)
-      row.push_back({rows.patches[k], rows.weights[k]});
+      row.push_back({rows.columns[k], rows.weights[k]});
     append_row(links.blocks[index], row);
   }
   finish_block(links, index);
 }
 
-Links read_matrix(hid_t file, const std::string& name) {
+FormFactorMatrix read_matrix(hid_t file, const std::string& name) {
   const Hdf5Handle group(H5Gopen2(file, name.c_str(), H5P_DEFAULT), H5Gclose);
   const auto [rows, columns] = read_shape(group.id(), name);
   Extractor row_begins(group.id(), "indptr", H5T_STD_U64LE, H5T_NATIVE_UINT64);
@@ -247,7 +248,7 @@ Links read_matrix(hid_t file, const std::string& name) {
   if (row_begins.size() != rows + 1 || indices.size() != weights.size())
     refuse(fmt::format("{} has {} rows, {} row starts, {} indices and {} weights", name, rows,
                        row_begins.size(), indices.size(), weights.size()));
-  Links links = make_links(static_cast<uint32_t>(rows), static_cast<uint32_t>(columns));
+  FormFactorMatrix links = make_form_factors(static_cast<uint32_t>(rows), static_cast<uint32_t>(columns));
   std::vector<uint64_t> ends;
   BlockRows block_rows;
   row_begins.extract(ends, 1);
@@ -255,10 +256,10 @@ Links read_matrix(hid_t file, const std::string& name) {
   if (position != 0) refuse(fmt::format("the first row of {} begins at link {}, not at 0", name, position));
   for (size_t b = 0; b < links.blocks.size(); ++b) {
     throw_if_interrupted();
-    const uint64_t first_row = b * Links::kRowsPerBlock;
-    row_begins.extract(ends, std::min<uint64_t>(Links::kRowsPerBlock, rows - first_row));
+    const uint64_t first_row = b * FormFactorMatrix::kRowsPerBlock;
+    row_begins.extract(ends, std::min<uint64_t>(FormFactorMatrix::kRowsPerBlock, rows - first_row));
     set_row_begins(block_rows, ends, position, first_row, links, indices.size(), name);
-    indices.extract(block_rows.patches, block_rows.row_begin.back());
+    indices.extract(block_rows.columns, block_rows.row_begin.back());
     weights.extract(block_rows.weights, block_rows.row_begin.back());
     check_block(block_rows, first_row, links, name);
     pack_rows(block_rows, links, b);
@@ -279,14 +280,14 @@ bool same_object(hid_t file, const char* a, const char* b) {
 LinksFile read_links_from(hid_t file) {
   LinksFile result;
   result.provenance = read_provenance(file);
-  result.gather = read_matrix(file, "gather");
-  if (!same_object(file, "gather", "patches")) result.patches = read_matrix(file, "patches");
-  const Links& patches = result.patches ? *result.patches : result.gather;
+  result.final_gather = read_matrix(file, "gather");
+  if (!same_object(file, "gather", "patches")) result.patch_form_factors = read_matrix(file, "patches");
+  const FormFactorMatrix& patches = result.patch_form_factors ? *result.patch_form_factors : result.final_gather;
   Extractor direct(file, "direct", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT);
-  if (patches.rows != result.gather.columns || patches.columns != result.gather.columns ||
-      direct.size() != result.gather.columns)
+  if (patches.rows != result.final_gather.columns || patches.columns != result.final_gather.columns ||
+      direct.size() != result.final_gather.columns)
     refuse(fmt::format("gather is {} x {}, patches {} x {}, direct {}: the patches do not agree",
-                       result.gather.rows, result.gather.columns, patches.rows, patches.columns,
+                       result.final_gather.rows, result.final_gather.columns, patches.rows, patches.columns,
                        direct.size()));
   direct.extract(result.direct, direct.size());
   for (size_t i = 0; i < result.direct.size(); ++i)
@@ -297,15 +298,15 @@ LinksFile read_links_from(hid_t file) {
 
 }  // namespace
 
-void write_links(const fs::path& path, const Links& gather, const Links* patches,
+void write_links(const fs::path& path, const FormFactorMatrix& final_gather, const FormFactorMatrix* patches,
                  std::span<const float> direct, const Provenance& provenance) {
   check_provenance(provenance);
-  const Links& between_patches = patches ? *patches : gather;
-  check_rows(gather, "gather");
+  const FormFactorMatrix& between_patches = patches ? *patches : final_gather;
+  check_rows(final_gather, "gather");
   check_rows(between_patches, "patches");
-  expect_equal(between_patches.rows, gather.columns, "rows of patches");
-  expect_equal(between_patches.columns, gather.columns, "columns of patches");
-  expect_equal(direct.size(), size_t{gather.columns}, "values of direct");
+  expect_equal(between_patches.rows, final_gather.columns, "rows of patches");
+  expect_equal(between_patches.columns, final_gather.columns, "columns of patches");
+  expect_equal(direct.size(), size_t{final_gather.columns}, "values of direct");
   for (const float value : direct)
     if (!std::isfinite(value)) fail_expectation("E0 of a patch", static_cast<double>(value), 0);
   OutputFile output(path);
@@ -314,7 +315,7 @@ void write_links(const fs::path& path, const Links& gather, const Links* patches
     Hdf5Handle file(H5Fcreate(output.temporary_path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
                     H5Fclose);
     write_provenance(file.id(), provenance);
-    write_matrix(file.id(), "gather", gather);
+    write_matrix(file.id(), "gather", final_gather);
     if (patches) {
       write_matrix(file.id(), "patches", *patches);
     } else {

@@ -17,9 +17,9 @@
 namespace hemibake {
 
 struct LinksFile {
-  Links gather;
-  std::optional<Links> patches;  // none: patches are texels, and `gather` is this matrix too
-  std::vector<float> direct;     // one per patch
+  FormFactorMatrix final_gather;
+  std::optional<FormFactorMatrix> patch_form_factors;  // none: patches are texels: the same as final_gather
+  std::vector<float> direct;                           // one per patch
   Provenance provenance;
 };
 
@@ -28,13 +28,14 @@ struct LinksFile {
 // attributes `hemibake:NAME` of the file as in io/image_io.h, with integers of 64 bits. The same bytes at
 // every run. Throws std::logic_error where sizes do not fit or a value is not finite; InputError where the
 // file cannot be written.
-void write_links(const std::filesystem::path& path, const Links& gather, const Links* patches,
-                 std::span<const float> direct, const Provenance& provenance);
+void write_links(const std::filesystem::path& path, const FormFactorMatrix& final_gather,
+                 const FormFactorMatrix* patches, std::span<const float> direct,
+                 const Provenance& provenance);
 
 // The links packed again: rows that were packed before stay as they are to 10⁻⁴ of their quantum
-// (transport/links/form_factors.h); few that lost links to it, and others, are rounded, their sum kept. Throws
-// InputError naming the file where it is not a whole links file, a row begins before the one before it, its
-// columns do not ascend or are beyond the matrix, or a value is not finite or a weight below 0.
+// (transport/links/form_factors.h); few that lost links to it, and others, are rounded, their sum kept.
+// Throws InputError naming the file where it is not a whole links file, a row begins before the one before
+// it, its columns do not ascend or are beyond the matrix, or a value is not finite or a weight below 0.
 LinksFile read_links(const std::filesystem::path& path);
 
 }  // namespace hemibake

@@ -44,7 +44,7 @@ std::string complaint_about_header(const char* data) {
 
 }  // namespace
 
-std::string complaint_about_png(const std::filesystem::path& path) {
+std::string png_error(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::vector<char> block(kBlockBytes);
   if (!read_exactly(file, block.data(), kSignature.size()) ||

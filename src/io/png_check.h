@@ -9,6 +9,6 @@ namespace hemibake {
 
 // What is wrong with the chunks of a PNG: one cut short, one whose CRC-32 does not fit, no end chunk, or a
 // header that claims more than kMaxTexels. Empty where nothing is, and for a file that is no PNG at all.
-std::string complaint_about_png(const std::filesystem::path& path);
+std::string png_error(const std::filesystem::path& path);
 
 }  // namespace hemibake

@@ -75,25 +75,25 @@ Relit relight_constant(const std::vector<Grid<float>>& irradiance, const glm::ve
   return relit;
 }
 
-Relit relight_over_links(const Visibility& seen, const ColoredLight& direct,
+Relit relight_over_links(const LightTransport& seen, const ColoredLight& direct,
                          const std::vector<glm::vec3>& patch_albedo, int bounces,
                          std::optional<double> most) {
-  expect_equal(direct.texels.size(), seen.direct_over_pi.size(), "direct light of texels");
-  expect_equal(direct.patches.size(), size_t{seen.gather.columns}, "direct light of patches");
-  expect_equal(patch_albedo.size(), direct.patches.size(), "albedo of patches");
+  expect_equal(direct.texel_light.size(), seen.direct_over_pi.size(), "direct light of texels");
+  expect_equal(direct.patch_light.size(), size_t{seen.final_gather.columns}, "direct light of patches");
+  expect_equal(patch_albedo.size(), direct.patch_light.size(), "albedo of patches");
   const int width = seen.direct_over_pi.width, height = seen.direct_over_pi.height;
   Relit relit;
   relit.bounces.assign(static_cast<size_t>(bounces) + 1, Grid<glm::vec3>(width, height));
   for (int c = 0; c < 3; ++c) {
-    store_channel(channel(direct.texels, c), c, relit.bounces[0]);
-    std::vector<double> light = channel(direct.patches, c), next(light.size());
-    std::vector<double> at_texels(direct.texels.size());
+    store_channel(channel(direct.texel_light, c), c, relit.bounces[0]);
+    std::vector<double> light = channel(direct.patch_light, c), next(light.size());
+    std::vector<double> at_texels(direct.texel_light.size());
     for (int b = 1; b <= bounces; ++b) {
       for (size_t j = 0; j < light.size(); ++j) light[j] *= static_cast<double>(patch_albedo[j][c]);
-      gather(seen.gather, light, at_texels);
+      multiply(seen.final_gather, light, at_texels);
       store_channel(at_texels, c, relit.bounces[static_cast<size_t>(b)]);
       if (b == bounces) break;
-      gather(seen.patch_links(), light, next);
+      multiply(seen.bounce_matrix(), light, next);
       light.swap(next);
     }
   }
@@ -107,7 +107,7 @@ std::vector<glm::vec3> albedo_of_patches(const Surface& surface, const Albedo& a
                                          const PatchSet& patches) {
   std::vector<glm::vec3> values(patches.count, albedo.constant);
   if (albedo.map.empty()) return values;
-  if (patches.kind == Patches::kTexels) return albedo.map.values;
+  if (patches.kind == PatchKind::kTexels) return albedo.map.values;
   for (uint32_t patch = 0; patch < patches.count; ++patch) {
     const FacetNode node = facet_node(patches, patch);
     const glm::dvec2 uv = node_uv(node.node);

@@ -22,8 +22,8 @@ struct Albedo {
 
 // What arrives before any bounce.
 struct ColoredLight {
-  std::vector<glm::dvec3> texels;   // irradiance at every texel
-  std::vector<glm::dvec3> patches;  // and at every patch
+  std::vector<glm::dvec3> texel_light;  // irradiance at every texel
+  std::vector<glm::dvec3> patch_light;  // and at every patch
 };
 
 struct Relit {
@@ -41,7 +41,7 @@ Relit relight_constant(const std::vector<Grid<float>>& irradiance, const glm::ve
 // The same with the bounces run again over the links, each patch reflecting with its own albedo.
 // patch_albedo: one per patch. bounces: made one by one, 0... most: irradiance that no total exceeds, if
 // known.
-Relit relight_over_links(const Visibility& seen, const ColoredLight& direct,
+Relit relight_over_links(const LightTransport& seen, const ColoredLight& direct,
                          const std::vector<glm::vec3>& patch_albedo, int bounces,
                          std::optional<double> most = {});
 

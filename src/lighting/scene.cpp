@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/color.h"
 #include "core/constants.h"
 #include "core/statistics.h"
-#include "core/color.h"
 
 namespace hemibake {
 namespace {
 
 // ρE/π with E(texel, channel).
 template <class Irradiance>
-Grid<glm::vec3> shade(const Wall& wall, const Irradiance& irradiance) {
+Grid<glm::vec3> shade(const ShadedScene& wall, const Irradiance& irradiance) {
   Grid<glm::vec3> light(wall.bake.width, wall.bake.height);
   for (size_t i = 0; i < light.size(); ++i) {
     const glm::vec3 albedo = wall.albedo.at(i);
@@ -24,7 +24,8 @@ Grid<glm::vec3> shade(const Wall& wall, const Irradiance& irradiance) {
 
 }  // namespace
 
-Grid<glm::vec3> shade_with(const Wall& wall, const std::function<double(double ao, double albedo)>& factor) {
+Grid<glm::vec3> shade_with(const ShadedScene& wall,
+                           const std::function<double(double ao, double albedo)>& factor) {
   return shade(wall, [&](size_t i, int c) {
     const double of_sky =
         factor(static_cast<double>(wall.bake.visible_fraction[i]), static_cast<double>(wall.albedo.at(i)[c]));
@@ -33,17 +34,17 @@ Grid<glm::vec3> shade_with(const Wall& wall, const std::function<double(double a
   });
 }
 
-Grid<glm::vec3> shade_ao_only(const Wall& wall) {
+Grid<glm::vec3> shade_ao_only(const ShadedScene& wall) {
   return shade_with(wall, [](double ao, double) { return ao; });
 }
 
-Grid<glm::vec3> shade_model(const Wall& wall) { return shade_with(wall, wall.model->total); }
+Grid<glm::vec3> shade_model(const ShadedScene& wall) { return shade_with(wall, wall.model->total); }
 
-Grid<glm::vec3> shade_truth(const Wall& wall) {
+Grid<glm::vec3> shade_truth(const ShadedScene& wall) {
   return shade(wall, [&](size_t i, int c) { return static_cast<double>(wall.truth->total[i][c]); });
 }
 
-Grid<glm::vec3> shade_bounce(const Wall& wall, size_t bounce) {
+Grid<glm::vec3> shade_bounce(const ShadedScene& wall, size_t bounce) {
   return shade(wall, [&](size_t i, int c) { return static_cast<double>(wall.truth->bounces[bounce][i][c]); });
 }
 

@@ -20,7 +20,7 @@ struct ShadingModel {
   std::function<double(double ao)> direct, first_bounce, bounce_ratio;
 };
 
-struct Wall {
+struct ShadedScene {
   Bake bake;
   Albedo albedo;
   Grid<glm::vec3> sky;         // irradiance that nothing shades, per texel; empty: not known
@@ -32,13 +32,14 @@ struct Wall {
 
 // Light that leaves each texel, ρE/π, RGB; a white wall in the open under a sky of radiance 1 gives 1. AO and
 // the model scale the sky's light only: nothing but its own shadow ever darkens the sun.
-Grid<glm::vec3> shade_ao_only(const Wall& wall);
-Grid<glm::vec3> shade_model(const Wall& wall);
-Grid<glm::vec3> shade_truth(const Wall& wall);
+Grid<glm::vec3> shade_ao_only(const ShadedScene& wall);
+Grid<glm::vec3> shade_model(const ShadedScene& wall);
+Grid<glm::vec3> shade_truth(const ShadedScene& wall);
 // The share of the truth that was reflected b times before its last time.
-Grid<glm::vec3> shade_bounce(const Wall& wall, size_t bounce);
+Grid<glm::vec3> shade_bounce(const ShadedScene& wall, size_t bounce);
 // As the model, with irradiance relative to the open sky from `factor(α, ρ)`.
-Grid<glm::vec3> shade_with(const Wall& wall, const std::function<double(double ao, double albedo)>& factor);
+Grid<glm::vec3> shade_with(const ShadedScene& wall,
+                           const std::function<double(double ao, double albedo)>& factor);
 
 // A picture against the truth, in luminance; everything over the truth's mean.
 struct PictureError {

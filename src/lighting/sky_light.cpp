@@ -8,11 +8,11 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "reference/ray_caster.h"
 #include "sampling/low_discrepancy.h"
 #include "sampling/warp.h"
 #include "surface/facets.h"
 #include "surface/frame.h"
-#include "reference/ray_caster.h"
 #include "tracers/ray_options.h"
 
 namespace hemibake {
@@ -30,7 +30,7 @@ struct GroundPoint {
 };
 
 // The point of the surface over x, y, texels, wrapped or moved into an open map.
-SurfacePoint surface_over(const Surface& surface, const HeightWalk& walk, GroundPoint at) {
+SurfacePoint surface_over(const Surface& surface, const HeightFieldRayCaster& walk, GroundPoint at) {
   const auto columns = static_cast<int>(facet_columns(surface));
   const auto rows = static_cast<int>(facet_count(surface) / 2) / columns;
   const auto into = [&](double value, int cells, int& cell) {
@@ -49,15 +49,16 @@ SurfacePoint surface_over(const Surface& surface, const HeightWalk& walk, Ground
   return walk.point_on_facet(2 * cell + 1, 1 - u, 1 - v);
 }
 
-bool sees(const HeightWalk& walk, const SurfacePoint& from, double lift, const glm::dvec3& direction) {
+bool sees(const HeightFieldRayCaster& walk, const SurfacePoint& from, double lift,
+          const glm::dvec3& direction) {
   SurfacePoint hit;
-  return walk.follow(from.position + glm::dvec3(0, 0, lift), direction, hit) != WalkEnd::kHit;
+  return walk.follow(from.position + glm::dvec3(0, 0, lift), direction, hit) != RayOutcome::kHit;
 }
 
 // ∫ (L − mean) V max(0, n·ω) dω + mean · E₀, with as many rays as `rays_of(receiver)` says and starts and
 // normals that `start(receiver, u)` gives.
 template <class Rays, class Start>
-std::vector<glm::dvec3> sky_light(const HeightWalk& walk, std::span<const float> direct_over_pi,
+std::vector<glm::dvec3> sky_light(const HeightFieldRayCaster& walk, std::span<const float> direct_over_pi,
                                   const Radiance& radiance, const SkyLightOptions& options, uint64_t stream,
                                   const Rays& rays_of, const Start& start) {
   std::vector<glm::dvec3> light(direct_over_pi.size());
@@ -71,10 +72,10 @@ std::vector<glm::dvec3> sky_light(const HeightWalk& walk, std::span<const float>
         shift[k] = unit_interval(mix_bits(options.seed, stream, 4 * receiver + k));
       glm::dvec3 sum(0);
       for (uint32_t ray = 0; ray < rays; ++ray) {
-        const glm::dvec2 u = {shift_modulo_one((ray + 0.5) / rays, shift[0]),
-                              shift_modulo_one(radical_inverse(2, ray), shift[1])};
-        const glm::dvec2 place = {shift_modulo_one(radical_inverse(3, ray), shift[2]),
-                                  shift_modulo_one(radical_inverse(5, ray), shift[3])};
+        const glm::dvec2 u = {cranley_patterson_rotate((ray + 0.5) / rays, shift[0]),
+                              cranley_patterson_rotate(radical_inverse(2, ray), shift[1])};
+        const glm::dvec2 place = {cranley_patterson_rotate(radical_inverse(3, ray), shift[2]),
+                                  cranley_patterson_rotate(radical_inverse(5, ray), shift[3])};
         const SurfacePoint from = start(receiver, place);
         const glm::dvec3 direction = frame_about(from.normal).world_from_tangent(sample_cosine_hemisphere(u));
         if (sees(walk, from, lift, direction)) sum += radiance(direction) - options.mean_radiance;
@@ -95,7 +96,8 @@ SurfacePoint texel_center(const Surface& surface, size_t texel) {
 }
 
 // One of the points that a patch looks from; u in the unit square.
-SurfacePoint patch_start(const HeightWalk& walk, const PatchSet& patches, size_t patch, const glm::dvec2& u) {
+SurfacePoint patch_start(const HeightFieldRayCaster& walk, const PatchSet& patches, size_t patch,
+                         const glm::dvec2& u) {
   const FacetNode node = facet_node(patches, static_cast<uint32_t>(patch));
   const glm::dvec2 at = node_start_uv(node.node, sample_uniform_triangle(u));
   return walk.point_on_facet(node.facet, at.x, at.y);
@@ -125,7 +127,7 @@ std::vector<double> shares(size_t receivers, const Share& share) {
 std::vector<glm::dvec3> sky_light_of_texels(const Surface& surface, std::span<const float> direct_over_pi,
                                             const Radiance& radiance, const SkyLightOptions& options) {
   expect_equal(direct_over_pi.size(), size_t{surface.texel_count()}, "texels given to sky_light_of_texels");
-  const HeightWalk walk(surface);
+  const HeightFieldRayCaster walk(surface);
   return sky_light(
       walk, direct_over_pi, radiance, options, kTexelStream, [&](size_t) { return options.rays; },
       [&](size_t texel, const glm::dvec2&) { return texel_center(surface, texel); });
@@ -135,7 +137,7 @@ std::vector<glm::dvec3> sky_light_of_patches(const Surface& surface, const Patch
                                              std::span<const float> direct_over_pi, const Radiance& radiance,
                                              const SkyLightOptions& options) {
   expect_equal(direct_over_pi.size(), size_t{patches.count}, "patches given to sky_light_of_patches");
-  const HeightWalk walk(surface);
+  const HeightFieldRayCaster walk(surface);
   const auto rays_of = [&](size_t patch) {
     const FacetNode node = facet_node(patches, static_cast<uint32_t>(patch));
     return rays_per_node(options.rays, node.subdivision, node.node);
@@ -145,7 +147,7 @@ std::vector<glm::dvec3> sky_light_of_patches(const Surface& surface, const Patch
 }
 
 std::vector<double> sun_share_of_texels(const Surface& surface, const glm::dvec3& direction) {
-  const HeightWalk walk(surface);
+  const HeightFieldRayCaster walk(surface);
   const double lift = walk.start_lift(kLiftTexels);
   return shares(surface.texel_count(), [&](size_t texel) {
     const SurfacePoint center = texel_center(surface, texel);
@@ -160,7 +162,7 @@ std::vector<double> sun_share_of_texels(const Surface& surface, const glm::dvec3
 
 std::vector<double> sun_share_of_patches(const Surface& surface, const PatchSet& patches,
                                          const glm::dvec3& direction) {
-  const HeightWalk walk(surface);
+  const HeightFieldRayCaster walk(surface);
   const double lift = walk.start_lift(kLiftTexels);
   return shares(patches.count, [&](size_t patch) {
     const glm::dvec3 normal = patch_start(walk, patches, patch, {}).normal;

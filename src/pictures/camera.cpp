@@ -8,8 +8,8 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "lighting/sky.h"
-#include "surface/facets.h"
 #include "reference/ray_caster.h"
+#include "surface/facets.h"
 
 namespace hemibake {
 namespace {
@@ -84,7 +84,7 @@ ViewSample sample_at(const Surface& surface, const glm::dvec3& position) {
 }  // namespace
 
 View look_at(const Surface& surface, const CameraOptions& options) {
-  const HeightWalk walk(surface);
+  const HeightFieldRayCaster walk(surface);
   const Camera camera = place_camera(surface, options);
   const double top = height_range_m(surface) / surface.texel_size_m;
   View view{options.width, options.height, options.samples * options.samples, {}};
@@ -103,7 +103,7 @@ View look_at(const Surface& surface, const CameraOptions& options) {
               glm::normalize(camera.forward + camera.pixel * (across * camera.right + along * camera.down));
           const auto start = enter_relief(surface, top, camera.eye, direction);
           SurfacePoint hit;
-          if (start && walk.follow(*start, direction, hit) == WalkEnd::kHit)
+          if (start && walk.follow(*start, direction, hit) == RayOutcome::kHit)
             view.samples[next] = sample_at(surface, hit.position);
         }
     progress.advance((end - begin) * per_row);

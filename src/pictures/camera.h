@@ -13,8 +13,8 @@
 namespace hemibake {
 
 struct CameraOptions {
-  double azimuth_rad = 0.6;        // where the camera stands, seen from the middle of the map (lighting/sky.h)
-  double elevation_rad = 0.75;     // above the ground, over 0 to π/2
+  double azimuth_rad = 0.6;     // where the camera stands, seen from the middle of the map (lighting/sky.h)
+  double elevation_rad = 0.75;  // above the ground, over 0 to π/2
   double field_of_view_rad = 0.5;  // across the picture
   double span = 1.1;               // map lengths across the picture at the middle of the map
   int width = 720, height = 540;   // pixels

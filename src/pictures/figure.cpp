@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/picture_text.h"
 #include "core/color.h"
+#include "io/picture_text.h"
 
 namespace hemibake {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 
-#include "io/image_io.h"
 #include "core/color.h"
+#include "io/image_io.h"
 
 namespace hemibake {
 namespace {
@@ -106,7 +106,7 @@ void Gallery::add_figure(const std::string& name, std::span<const std::vector<Pa
   record(name, false);
 }
 
-void Gallery::say_missing(const std::string& name, const std::string& reason) {
+void Gallery::report_missing(const std::string& name, const std::string& reason) {
   missing_.push_back({{"name", name}, {"reason", reason}});
 }
 

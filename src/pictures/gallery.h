@@ -35,7 +35,7 @@ class Gallery {
   void add_figure(const std::string& name, std::span<const std::vector<Panel>> rows,
                   std::span<const Grid<glm::vec3>> below = {});
 
-  void say_missing(const std::string& name, const std::string& reason);
+  void report_missing(const std::string& name, const std::string& reason);
 
   // {"pictures": [{"name", "files", …}], "missing": [{"name", "reason"}]}
   nlohmann::ordered_json json() const;

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
+#include "core/color.h"
 #include "core/constants.h"
 #include "pictures/color_map.h"
-#include "core/color.h"
 
 namespace hemibake {
 namespace {
@@ -55,7 +55,7 @@ std::string error_caption(const char* name, const Grid<glm::vec3>& picture, cons
 }
 
 // What stands in for a picture that cannot be made.
-std::string why_not(const Wall& wall, bool needs_model) {
+std::string why_not(const ShadedScene& wall, bool needs_model) {
   if (wall.bake.visible_fraction.empty()) return "the bake holds no ao";
   if (wall.sky.empty()) return "the light of this sky needs normals, and the bake holds none";
   if (needs_model && !wall.model) return "no model could be fitted";
@@ -70,8 +70,8 @@ struct NamedDifference {
 
 }  // namespace
 
-ShadedWall shade_wall(const Wall& wall, const PictureOptions& options) {
-  ShadedWall shaded;
+SceneImages make_scene_images(const ShadedScene& wall, const PictureOptions& options) {
+  SceneImages shaded;
   if (why_not(wall, false).empty()) shaded.ao_only = shade_ao_only(wall);
   if (why_not(wall, true).empty()) shaded.model = shade_model(wall);
   if (wall.truth) shaded.truth = shade_truth(wall);
@@ -81,11 +81,11 @@ ShadedWall shade_wall(const Wall& wall, const PictureOptions& options) {
   return shaded;
 }
 
-void add_triptych(const Wall& wall, const ShadedWall& shaded, Gallery& gallery) {
+void add_triptych(const ShadedScene& wall, const SceneImages& shaded, Gallery& gallery) {
   std::vector<Panel> row;
   const auto add = [&](const char* name, const Grid<glm::vec3>& picture, const std::string& caption,
                        const std::string& reason) {
-    if (picture.empty()) return gallery.say_missing(name, reason);
+    if (picture.empty()) return gallery.report_missing(name, reason);
     gallery.add_light(name, picture, shaded.exposure_ev);
     row.push_back(light_panel(picture, kPanelSide, shaded.exposure_ev,
                               fmt::format("{}, {:+.2f} EV", caption, shaded.exposure_ev)));
@@ -96,12 +96,12 @@ void add_triptych(const Wall& wall, const ShadedWall& shaded, Gallery& gallery) 
   if (!row.empty()) gallery.add_figure("triptych", {&row, 1});
 }
 
-void add_differences(const ShadedWall& shaded, Gallery& gallery) {
-  if (shaded.truth.empty()) return gallery.say_missing("differences", "there is no ground truth");
+void add_differences(const SceneImages& shaded, Gallery& gallery) {
+  if (shaded.truth.empty()) return gallery.report_missing("differences", "there is no ground truth");
   std::vector<NamedDifference> named;
   if (!shaded.ao_only.empty()) named.push_back({"difference_ao_only", "AO only", &shaded.ao_only});
   if (!shaded.model.empty()) named.push_back({"difference_model", "model", &shaded.model});
-  if (named.empty()) return gallery.say_missing("differences", "there is nothing but the ground truth");
+  if (named.empty()) return gallery.report_missing("differences", "there is nothing but the ground truth");
 
   std::vector<Grid<glm::vec3>> differences;
   for (const NamedDifference& one : named) differences.push_back(difference(*one.picture, shaded.truth));
@@ -119,8 +119,8 @@ void add_differences(const ShadedWall& shaded, Gallery& gallery) {
   gallery.add_figure("differences", {&row, 1}, {&bar, 1});
 }
 
-void add_bounces(const Wall& wall, const PictureOptions& options, Gallery& gallery) {
-  if (!wall.truth) return gallery.say_missing("bounces", "the bake holds no irradiance");
+void add_bounces(const ShadedScene& wall, const PictureOptions& options, Gallery& gallery) {
+  if (!wall.truth) return gallery.report_missing("bounces", "the bake holds no irradiance");
   std::vector<Panel> row;
   const size_t count = std::min(wall.truth->bounces.size(), static_cast<size_t>(options.strip_bounces));
   for (size_t b = 0; b < count; ++b) {
@@ -132,12 +132,12 @@ void add_bounces(const Wall& wall, const PictureOptions& options, Gallery& galle
         light, kStripSide, exposure_ev,
         fmt::format("{}, {:+.2f} EV", b == 0 ? "direct" : fmt::format("bounce {}", b), exposure_ev)));
   }
-  if (count == 1) gallery.say_missing("bounces after the first", "the bake holds none");
+  if (count == 1) gallery.report_missing("bounces after the first", "the bake holds none");
   gallery.add_figure("bounces", {&row, 1});
 }
 
-void add_saturation(const Wall& wall, const ShadedWall& shaded, Gallery& gallery) {
-  if (shaded.model.empty()) return gallery.say_missing("saturation", why_not(wall, true));
+void add_saturation(const ShadedScene& wall, const SceneImages& shaded, Gallery& gallery) {
+  if (shaded.model.empty()) return gallery.report_missing("saturation", why_not(wall, true));
   // ρ/(1−ρτ) of the notes, τ from 0 to 1, over its largest channel: the colour alone; and times 1−τ, which is
   // what is left of it where no light is lost.
   const int width = 3 * kPanelSide;
@@ -180,8 +180,9 @@ void add_saturation(const Wall& wall, const ShadedWall& shaded, Gallery& gallery
       "tau", tau, {sequential_color, 0, 1, 0, "tau: each further bounce over the one before, at albedo 1"});
 }
 
-void add_views(const Wall& wall, const ShadedWall& shaded, const PictureOptions& options, Gallery& gallery) {
-  if (!wall.surface) return gallery.say_missing("views", "the map of the bake was not found");
+void add_views(const ShadedScene& wall, const SceneImages& shaded, const PictureOptions& options,
+               Gallery& gallery) {
+  if (!wall.surface) return gallery.report_missing("views", "the map of the bake was not found");
   const View view = look_at(*wall.surface, options.camera);
   const auto seen = [&](const Grid<glm::vec3>& picture) {
     return paint_view(*wall.surface, view, picture, glm::vec3(0));
@@ -197,7 +198,7 @@ void add_views(const Wall& wall, const ShadedWall& shaded, const PictureOptions&
   add("view_model", shaded.model, error_caption("model", shaded.model, shaded.truth));
   add("view_truth", shaded.truth, "ground truth");
   if (rows[0].size() < 3)
-    return gallery.say_missing("overview", "not all of AO only, model and truth are there");
+    return gallery.report_missing("overview", "not all of AO only, model and truth are there");
 
   const Grid<float> of_ao = luminance_of(seen(difference(shaded.ao_only, shaded.truth)));
   const Grid<float> of_model = luminance_of(seen(difference(shaded.model, shaded.truth)));

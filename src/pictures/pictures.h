@@ -2,9 +2,9 @@
 // what is missing and why.
 #pragma once
 
+#include "lighting/scene.h"
 #include "pictures/camera.h"
 #include "pictures/gallery.h"
-#include "lighting/scene.h"
 
 namespace hemibake {
 
@@ -15,26 +15,27 @@ struct PictureOptions {
 };
 
 // AO only, model and truth, made once for all pictures that show them. Empty where they cannot be made.
-struct ShadedWall {
+struct SceneImages {
   Grid<glm::vec3> ao_only, model, truth;
   double exposure_ev = 0;
 };
-ShadedWall shade_wall(const Wall& wall, const PictureOptions& options);
+SceneImages make_scene_images(const ShadedScene& wall, const PictureOptions& options);
 
 // ao_only, model, truth, and the three beside each other.
-void add_triptych(const Wall& wall, const ShadedWall& shaded, Gallery& gallery);
+void add_triptych(const ShadedScene& wall, const SceneImages& shaded, Gallery& gallery);
 // Signed differences of AO only and of the model from the truth.
-void add_differences(const ShadedWall& shaded, Gallery& gallery);
+void add_differences(const SceneImages& shaded, Gallery& gallery);
 // The light of every bounce by itself, each at its own exposure.
-void add_bounces(const Wall& wall, const PictureOptions& options, Gallery& gallery);
+void add_bounces(const ShadedScene& wall, const PictureOptions& options, Gallery& gallery);
 // How the colour of the wall deepens with τ.
-void add_saturation(const Wall& wall, const ShadedWall& shaded, Gallery& gallery);
+void add_saturation(const ShadedScene& wall, const SceneImages& shaded, Gallery& gallery);
 // AO, bent normals and the energy map of the bake.
-void add_planes(const Wall& wall, Gallery& gallery);
+void add_planes(const ShadedScene& wall, Gallery& gallery);
 // Every estimator's AO beside the bake's; alchemy's before and after each pass of its blur.
-void add_estimators(const Wall& wall, Gallery& gallery);
+void add_estimators(const ShadedScene& wall, Gallery& gallery);
 // AO only, model and truth on the surface itself, seen by a camera; and the three with their errors on one
 // sheet, `overview`.
-void add_views(const Wall& wall, const ShadedWall& shaded, const PictureOptions& options, Gallery& gallery);
+void add_views(const ShadedScene& wall, const SceneImages& shaded, const PictureOptions& options,
+               Gallery& gallery);
 
 }  // namespace hemibake

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "core/color.h"
 #include "core/constants.h"
 #include "core/statistics.h"
 #include "estimators/estimator.h"
 #include "pictures/color_map.h"
 #include "pictures/pictures.h"
-#include "core/color.h"
 
 namespace hemibake {
 namespace {
@@ -45,17 +45,17 @@ std::string estimate_caption(const std::string& name, const Grid<float>& ao, AoK
 
 }  // namespace
 
-void add_planes(const Wall& wall, Gallery& gallery) {
+void add_planes(const ShadedScene& wall, Gallery& gallery) {
   const Bake& bake = wall.bake;
   if (bake.visible_fraction.empty())
-    gallery.say_missing("ao", "the bake holds no ao");
+    gallery.report_missing("ao", "the bake holds no ao");
   else
     gallery.add_values("ao", bake.visible_fraction);
   if (bake.bent_normals.empty())
-    gallery.say_missing("bent_normals", "the bake holds no bent normals");
+    gallery.report_missing("bent_normals", "the bake holds no bent normals");
   else
     gallery.add_vectors("bent_normals", bake.bent_normals, as_colors(bake.bent_normals));
-  if (bake.total.empty()) return gallery.say_missing("energy", "the bake holds no total");
+  if (bake.total.empty()) return gallery.report_missing("energy", "the bake holds no total");
   const Grid<float> energy = over_pi(bake.total);
   const float least = *std::ranges::min_element(energy.values);
   // From the tenth below the least, so that what is missing shows.
@@ -65,10 +65,10 @@ void add_planes(const Wall& wall, Gallery& gallery) {
       {sequential_color, low, 1, 0, "all bounces at albedo 1 over pi: 1 where no light is missing"});
 }
 
-void add_estimators(const Wall& wall, Gallery& gallery) {
+void add_estimators(const ShadedScene& wall, Gallery& gallery) {
   if (wall.bake.visible_fraction.empty())
-    return gallery.say_missing("estimators", "the bake holds no ao to compare with");
-  if (!wall.surface) return gallery.say_missing("estimators", "the map of the bake was not found");
+    return gallery.report_missing("estimators", "the bake holds no ao to compare with");
+  if (!wall.surface) return gallery.report_missing("estimators", "the map of the bake was not found");
   std::array<std::vector<Panel>, 2> rows;
   rows[0].push_back(grey_panel(wall.bake.visible_fraction, "the bake, AO"));
   const EstimatorOptions options;

@@ -8,7 +8,7 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "reference/path_tracer.h"
-#include "tracers/texel_sample.h"
+#include "reference/texel_sample.h"
 
 namespace hemibake {
 namespace {
@@ -158,7 +158,7 @@ RefereeCheck check_against_referee(const Surface& surface, const Bake& bake,
   check.texels = sample.texels.size();
   check.paths_per_texel = measured.paths();
   check.rays = measured.rays;
-  check.lost_rays = measured.lost_rays;
+  check.truncated_rays = measured.truncated_rays;
   const std::vector<bool> everywhere(sample.texels.size(), true);
   for (const Comparison& comparison : comparisons)
     check.means.push_back(

@@ -59,7 +59,7 @@ struct RefereeCheck {
   size_t texels = 0;
   uint64_t paths_per_texel = 0;
   uint64_t rays = 0;
-  uint64_t lost_rays = 0;  // see RefereeEstimates
+  uint64_t truncated_rays = 0;  // see RefereeEstimates
 };
 
 // surface: what was baked, with the normals the bake used. The bake needs `visible_fraction` and at least one

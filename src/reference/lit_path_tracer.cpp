@@ -11,8 +11,8 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/statistics.h"
-#include "reference/ray_caster.h"
 #include "reference/random.h"
+#include "reference/ray_caster.h"
 
 namespace hemibake {
 namespace {
@@ -49,13 +49,13 @@ glm::dvec3 albedo_at(const Grid<glm::vec3>& albedo, Edge edge, double x, double 
 }
 
 // Radiance times albedos along one path; its mean over the cosine-distributed start is E/π.
-glm::dvec3 path_light(const HeightWalk& walk, const RefereeLighting& lighting, Edge edge, SurfacePoint at,
-                      double lift, RefereeRandom& random) {
+glm::dvec3 path_light(const HeightFieldRayCaster& walk, const RefereeLighting& lighting, Edge edge,
+                      SurfacePoint at, double lift, RefereeRandom& random) {
   glm::dvec3 share(1);
   for (;;) {
     const glm::dvec3 direction = random_cosine_direction(at.normal, random);
     const glm::dvec3 start(at.position.x, at.position.y, at.position.z + lift);
-    if (walk.follow(start, direction, at) != WalkEnd::kHit) return share * lighting.sky(direction);
+    if (walk.follow(start, direction, at) != RayOutcome::kHit) return share * lighting.sky(direction);
     const glm::dvec3 albedo = albedo_at(lighting.albedo, edge, at.position.x, at.position.y);
     const double survival = std::max({albedo.r, albedo.g, albedo.b});
     if (survival == 0 || (survival < 1 && random.uniform() >= survival)) return glm::dvec3(0);
@@ -68,7 +68,7 @@ glm::dvec3 path_light(const HeightWalk& walk, const RefereeLighting& lighting, E
 std::vector<RefereeIrradiance> referee_lit_texels(const Surface& surface, std::span<const uint32_t> texels,
                                                   const RefereeLighting& lighting, int paths, uint64_t seed) {
   check_lighting(surface, lighting, paths);
-  const HeightWalk walk(surface);
+  const HeightFieldRayCaster walk(surface);
   const double lift = walk.start_lift(kLiftTexels);
   const auto width = static_cast<uint32_t>(surface.width());
   std::vector<RefereeIrradiance> results(texels.size());

@@ -11,8 +11,8 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/statistics.h"
-#include "reference/ray_caster.h"
 #include "reference/random.h"
+#include "reference/ray_caster.h"
 
 namespace hemibake {
 namespace {
@@ -68,7 +68,7 @@ class Referee {
         quantities_(options.bounces + 1 + static_cast<int>(options.totals.size())),
         lift_(walk_.start_lift(options.lift_texels)) {}
 
-  const HeightWalk& walk() const { return walk_; }
+  const HeightFieldRayCaster& walk() const { return walk_; }
   int quantities() const { return quantities_; }
 
   // One independent estimate of every quantity into `out`. Weights of `group` sum to 1.
@@ -102,10 +102,10 @@ class Referee {
 
   bool follow(const SurfacePoint& from, RefereeRandom& random, SurfacePoint& hit, RayCounts& counts) const {
     const glm::dvec3 start(from.position.x, from.position.y, from.position.z + lift_);
-    const WalkEnd end = walk_.follow(start, random_cosine_direction(from.normal, random), hit);
+    const RayOutcome end = walk_.follow(start, random_cosine_direction(from.normal, random), hit);
     ++counts.rays;
-    counts.lost += end == WalkEnd::kLost;
-    return end == WalkEnd::kHit;
+    counts.lost += end == RayOutcome::kTruncated;
+    return end == RayOutcome::kHit;
   }
 
   static void resample(std::span<const Path> survivors, RefereeRandom& random, Group& group) {
@@ -148,7 +148,7 @@ class Referee {
     }
   }
 
-  HeightWalk walk_;
+  HeightFieldRayCaster walk_;
   const RefereeOptions& options_;
   int quantities_;
   double lift_;
@@ -180,7 +180,7 @@ RefereeEstimates make_estimates(int quantities, uint32_t groups, size_t receiver
 void add_counts(std::span<const RayCounts> counts, RefereeEstimates& estimates) {
   for (const RayCounts& c : counts) {
     estimates.rays += c.rays;
-    estimates.lost_rays += c.lost;
+    estimates.truncated_rays += c.lost;
   }
 }
 
@@ -219,7 +219,7 @@ RefereeEstimates referee_texels(const Surface& surface, std::span<const uint32_t
 std::vector<double> referee_visible_fractions(const Surface& surface, std::span<const uint32_t> texels,
                                               int rays, uint64_t seed) {
   if (rays < 1) throw InputError(fmt::format("referee rays {}, expected at least 1", rays));
-  const HeightWalk walk(surface);
+  const HeightFieldRayCaster walk(surface);
   const double lift = walk.start_lift(RefereeOptions().lift_texels);
   const int side = static_cast<int>(std::ceil(std::sqrt(rays)));
   constexpr uint64_t kFractionGroup = ~uint64_t{0};
@@ -235,7 +235,7 @@ std::vector<double> referee_visible_fractions(const Surface& surface, std::span<
             uniform_direction(receiver.normal, (cell / side + random.uniform()) / side,
                               (cell % side + random.uniform()) / side);
         SurfacePoint hit;
-        visible += walk.follow(start, direction, hit) != WalkEnd::kHit;
+        visible += walk.follow(start, direction, hit) != RayOutcome::kHit;
       }
       fractions[i] = static_cast<double>(visible) / (side * side);
     }
@@ -246,7 +246,7 @@ std::vector<double> referee_visible_fractions(const Surface& surface, std::span<
 RefereeEstimates referee_area(const Surface& surface, const RefereeOptions& options) {
   check_options(options);
   const Referee referee(surface, options);
-  const HeightWalk& walk = referee.walk();
+  const HeightFieldRayCaster& walk = referee.walk();
   // Area of all facets up to each, so that a uniform number finds a facet by its area.
   std::vector<double> area(walk.facet_count());
   double sum = 0;

@@ -60,8 +60,8 @@ struct RefereeEstimates {
   std::vector<double> mean;      // [receiver · quantities + quantity]
   std::vector<double> variance;  // of that mean, unbiased
   uint64_t rays = 0;
-  uint64_t lost_rays =
-      0;  // taken for sky, see WalkEnd::kLost: every estimate is off by at most lost paths / paths
+  uint64_t truncated_rays =
+      0;  // taken for sky, see RayOutcome::kTruncated: every estimate is off by at most lost paths / paths
 
   uint64_t paths() const { return uint64_t{groups} * kRefereeGroupPaths; }  // per receiver
   size_t receivers() const { return quantities == 0 ? 0 : mean.size() / static_cast<size_t>(quantities); }

@@ -7,7 +7,7 @@
 namespace hemibake {
 
 // A ray with its height in metres, so that it compares with the map as stored. x, y move back by whole tiles.
-struct HeightWalk::Ray {
+struct HeightFieldRayCaster::Ray {
   double x, y, z_m;
   double dx, dy, dz_m;
   double inverse_dx, inverse_dy;
@@ -17,7 +17,7 @@ struct HeightWalk::Ray {
   double z_at(double t) const { return z_m + t * dz_m; }
 };
 
-HeightWalk::HeightWalk(const Surface& surface)
+HeightFieldRayCaster::HeightFieldRayCaster(const Surface& surface)
     : surface_(surface),
       cells_x_(surface.edge == Edge::kWrap ? surface.width() : surface.width() - 1),
       cells_y_(surface.edge == Edge::kWrap ? surface.height() : surface.height() - 1),
@@ -26,7 +26,7 @@ HeightWalk::HeightWalk(const Surface& surface)
   build_tops();
 }
 
-void HeightWalk::build_tops() {
+void HeightFieldRayCaster::build_tops() {
   // A level per factor of 4: finer steps cost more tests than they skip (FACTS.md §5 measured 4 to 64).
   Grid<float> finer(cells_x_, cells_y_);
   for (int y = 0; y < cells_y_; ++y)
@@ -44,11 +44,11 @@ void HeightWalk::build_tops() {
 }
 
 // x, y up to one beyond the last texel.
-float HeightWalk::height_m(int x, int y) const {
+float HeightFieldRayCaster::height_m(int x, int y) const {
   return surface_.heights_m(x == surface_.width() ? 0 : x, y == surface_.height() ? 0 : y);
 }
 
-HeightWalk::Half HeightWalk::half_of(int cell_x, int cell_y, bool far_half) const {
+HeightFieldRayCaster::Half HeightFieldRayCaster::half_of(int cell_x, int cell_y, bool far_half) const {
   const double along_x = height_m(cell_x + 1, cell_y), along_y = height_m(cell_x, cell_y + 1);
   if (!far_half) {
     const double corner = height_m(cell_x, cell_y);
@@ -58,22 +58,22 @@ HeightWalk::Half HeightWalk::half_of(int cell_x, int cell_y, bool far_half) cons
   return {cell_x + 1.0, cell_y + 1.0, corner, corner - along_y, corner - along_x};
 }
 
-SurfacePoint HeightWalk::point_on(const Half& half, double x, double y) const {
+SurfacePoint HeightFieldRayCaster::point_on(const Half& half, double x, double y) const {
   const double texel = surface_.texel_size_m;
   return {{x, y, half.height_m(x, y) / texel},
           glm::normalize(glm::dvec3(-half.slope_x_m / texel, -half.slope_y_m / texel, 1))};
 }
 
-uint32_t HeightWalk::facet_count() const {
+uint32_t HeightFieldRayCaster::facet_count() const {
   return 2 * static_cast<uint32_t>(cells_x_) * static_cast<uint32_t>(cells_y_);
 }
 
-double HeightWalk::start_lift(double wanted_texels) const {
+double HeightFieldRayCaster::start_lift(double wanted_texels) const {
   const double range = range_m_ / surface_.texel_size_m;
   return std::max(wanted_texels * std::min(1.0, range), 0x1p-44 * range);
 }
 
-SurfacePoint HeightWalk::point_on_facet(uint32_t facet, double u, double v) const {
+SurfacePoint HeightFieldRayCaster::point_on_facet(uint32_t facet, double u, double v) const {
   const uint32_t cell = facet / 2, columns = static_cast<uint32_t>(cells_x_);
   const bool far_half = facet % 2 == 1;
   const Half half = half_of(static_cast<int>(cell % columns), static_cast<int>(cell / columns), far_half);
@@ -81,7 +81,7 @@ SurfacePoint HeightWalk::point_on_facet(uint32_t facet, double u, double v) cons
   return point_on(half, half.corner_x + leg * u, half.corner_y + leg * v);
 }
 
-HeightWalk::Block HeightWalk::block_at(int cell_x, int cell_y, int level) const {
+HeightFieldRayCaster::Block HeightFieldRayCaster::block_at(int cell_x, int cell_y, int level) const {
   if (level == 0) {
     const float top = std::max({height_m(cell_x, cell_y), height_m(cell_x + 1, cell_y),
                                 height_m(cell_x, cell_y + 1), height_m(cell_x + 1, cell_y + 1)});
@@ -94,8 +94,8 @@ HeightWalk::Block HeightWalk::block_at(int cell_x, int cell_y, int level) const 
           tops_m_[static_cast<size_t>(level - 1)](block_x, block_y)};
 }
 
-bool HeightWalk::hits_half(const Ray& ray, const Half& half, double enter, double leave,
-                           SurfacePoint& hit) const {
+bool HeightFieldRayCaster::hits_half(const Ray& ray, const Half& half, double enter, double leave,
+                                     SurfacePoint& hit) const {
   const double below = half.height_m(ray.x_at(leave), ray.y_at(leave)) - ray.z_at(leave);
   if (below <= 0) return false;
   // Rounding may put the entry below the plane too: it counts as on it.
@@ -105,8 +105,8 @@ bool HeightWalk::hits_half(const Ray& ray, const Half& half, double enter, doubl
   return true;
 }
 
-bool HeightWalk::hits_cell(const Ray& ray, int cell_x, int cell_y, double enter, double leave,
-                           SurfacePoint& hit) const {
+bool HeightFieldRayCaster::hits_cell(const Ray& ray, int cell_x, int cell_y, double enter, double leave,
+                                     SurfacePoint& hit) const {
   // The diagonal is where the shares along both legs add up to 1.
   const double diagonal = cell_x + cell_y + 1.0;
   const double enter_side = ray.x_at(enter) + ray.y_at(enter) - diagonal;
@@ -118,7 +118,8 @@ bool HeightWalk::hits_cell(const Ray& ray, int cell_x, int cell_y, double enter,
          hits_half(ray, half_of(cell_x, cell_y, leave_side >= 0), cross, leave, hit);
 }
 
-WalkEnd HeightWalk::follow(const glm::dvec3& start, const glm::dvec3& direction, SurfacePoint& hit) const {
+RayOutcome HeightFieldRayCaster::follow(const glm::dvec3& start, const glm::dvec3& direction,
+                                        SurfacePoint& hit) const {
   const double texel = surface_.texel_size_m;
   Ray ray{start.x, start.y, start.z * texel, direction.x, direction.y, direction.z * texel, 0, 0};
   // Finite, so that on the very edge of a block (0 texels to go) the product is 0.
@@ -126,7 +127,7 @@ WalkEnd HeightWalk::follow(const glm::dvec3& start, const glm::dvec3& direction,
   ray.inverse_dx = ray.dx == 0 ? kNever : 1 / ray.dx;
   ray.inverse_dy = ray.dy == 0 ? kNever : 1 / ray.dy;
   const bool rises = ray.dz_m >= 0;
-  if (rises && ray.z_m >= range_m_) return WalkEnd::kSky;
+  if (rises && ray.z_m >= range_m_) return RayOutcome::kEscaped;
 
   // Where the ray has left the slab of the relief: above the top, or surely below the ground (height 0).
   const double below_ground = texel + 1e-6 * range_m_;
@@ -149,9 +150,9 @@ WalkEnd HeightWalk::follow(const glm::dvec3& start, const glm::dvec3& direction,
     if (!clear && hits_cell(ray, cell_x, cell_y, t, leave, hit)) {
       hit.position.x = std::clamp(hit.position.x, 1.0 * cell_x, cell_x + 1.0);
       hit.position.y = std::clamp(hit.position.y, 1.0 * cell_y, cell_y + 1.0);
-      return WalkEnd::kHit;
+      return RayOutcome::kHit;
     }
-    if (leave >= end) return WalkEnd::kSky;
+    if (leave >= end) return RayOutcome::kEscaped;
 
     // On to the neighbouring cell. Cells advance by whole numbers: rounding of t cannot stop the walk.
     t = leave;
@@ -167,7 +168,7 @@ WalkEnd HeightWalk::follow(const glm::dvec3& start, const glm::dvec3& direction,
     const int tiles_x = cell_x < 0 ? -1 : cell_x == cells_x_ ? 1 : 0;
     const int tiles_y = cell_y < 0 ? -1 : cell_y == cells_y_ ? 1 : 0;
     if (tiles_x != 0 || tiles_y != 0) {
-      if (surface_.edge == Edge::kOpen) return WalkEnd::kSky;
+      if (surface_.edge == Edge::kOpen) return RayOutcome::kEscaped;
       cell_x -= tiles_x * cells_x_;
       cell_y -= tiles_y * cells_y_;
       ray.x -= tiles_x * cells_x_;
@@ -179,7 +180,7 @@ WalkEnd HeightWalk::follow(const glm::dvec3& start, const glm::dvec3& direction,
         block.begin_x >> shift != cell_x >> shift || block.begin_y >> shift != cell_y >> shift;
     if (entered && level < last_level) ++level;
   }
-  return WalkEnd::kLost;
+  return RayOutcome::kTruncated;
 }
 
 }  // namespace hemibake

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/grid.h"
+#include "surface/ray_outcome.h"
 #include "surface/surface.h"
 
 namespace hemibake {
@@ -22,19 +23,17 @@ struct SurfacePoint {
   glm::dvec3 normal;    // unit
 };
 
-// kLost: still below the highest texel after a horizontal distance of 10⁵ height ranges (at least 10⁵
-// texels), which only rays within 10⁻⁵ rad of the horizon can be.
-enum class WalkEnd { kSky, kHit, kLost };
-
-class HeightWalk {
+// Truncates rays that are still below the highest texel after a horizontal distance of 10⁵ height ranges (at
+// least 10⁵ texels), which only rays within 10⁻⁵ rad of the horizon can be.
+class HeightFieldRayCaster {
  public:
   // `surface` must outlive the walk. Keeps the maxima of blocks of 4ᵏ × 4ᵏ cells, a twelfth of the map's
   // memory.
-  explicit HeightWalk(const Surface& surface);
+  explicit HeightFieldRayCaster(const Surface& surface);
 
   // Follows the ray from `start`, on or above the surface and inside the map, along `direction` (unit) to the
   // first point of the surface, in `hit` with its position wrapped into the map and its facet's normal.
-  WalkEnd follow(const glm::dvec3& start, const glm::dvec3& direction, SurfacePoint& hit) const;
+  RayOutcome follow(const glm::dvec3& start, const glm::dvec3& direction, SurfacePoint& hit) const;
 
   // The point of the facet (numbered as in surface/facets.h) at shares u, v ≥ 0, u + v ≤ 1, of its legs along
   // x and y.

@@ -27,7 +27,7 @@ inline uint64_t mix_bits(uint64_t seed, uint64_t stream, uint64_t index) {
 inline double unit_interval(uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
 // u shifted round the unit interval by `shift`; both in [0, 1).
-inline double shift_modulo_one(double u, double shift) {
+inline double cranley_patterson_rotate(double u, double shift) {
   const double sum = u + shift;
   return sum >= 1 ? sum - 1 : sum;
 }

@@ -6,7 +6,7 @@
 
 namespace hemibake {
 
-std::vector<uint32_t> draw_from_strata(uint32_t count, uint32_t wanted, uint64_t stream) {
+std::vector<uint32_t> stratified_sample(uint32_t count, uint32_t wanted, uint64_t stream) {
   std::vector<uint32_t> places(std::min(count, wanted));
   for (uint32_t i = 0; i < places.size(); ++i) {
     const double place = (i + unit_interval(mix_bits(0, stream, i))) / static_cast<double>(places.size());

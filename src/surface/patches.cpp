@@ -13,7 +13,7 @@
 namespace hemibake {
 namespace {
 
-// Links keep indices of 32 bits; the highest bit is left to how they are stored.
+// FormFactorMatrix keep indices of 32 bits; the highest bit is left to how they are stored.
 constexpr uint64_t kMaxPatches = uint64_t{1} << 31;
 
 // Size of the copy of the facet a node looks from, over the facet. Larger ones average away what nodes are
@@ -123,10 +123,10 @@ FacetInRun facet_in_run(const PatchSet& patches, uint32_t facet) {
 
 }  // namespace
 
-PatchSet make_patches(const Surface& surface, Patches kind) {
+PatchSet make_patches(const Surface& surface, PatchKind kind) {
   PatchSet patches;
   patches.kind = kind;
-  if (kind == Patches::kTexels) {
+  if (kind == PatchKind::kTexels) {
     patches.count = surface.texel_count();
     return patches;
   }
@@ -207,7 +207,7 @@ std::array<PatchShare, 3> patch_shares(const PatchSet& patches, uint32_t facet, 
   return shares;
 }
 
-uint32_t draw_patch(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double choice) {
+uint32_t sample_patch(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double choice) {
   const FacetInRun place = facet_in_run(patches, facet);
   const std::array<NodeShare, 3> nodes = node_shares(place.k(), uv);
   const size_t drawn = choice < nodes[0].share ? 0 : choice < nodes[0].share + nodes[1].share ? 1 : 2;
@@ -238,7 +238,7 @@ double patch_area_texels(const Surface& surface, const PatchSet& patches, uint32
 }
 
 glm::dvec2 patch_position_texels(const Surface& surface, const PatchSet& patches, uint32_t patch) {
-  if (patches.kind == Patches::kTexels) {
+  if (patches.kind == PatchKind::kTexels) {
     const uint32_t width = static_cast<uint32_t>(surface.width());
     return {patch % width, patch / width};
   }

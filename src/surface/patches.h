@@ -21,7 +21,7 @@
 
 namespace hemibake {
 
-enum class Patches { kFacets, kTexels };
+enum class PatchKind { kFacets, kTexels };
 
 inline constexpr int kCoarseSubdivision = 2, kFineSubdivision = 4;
 inline constexpr double kLongestCoarseEdge = 2;  // texels
@@ -38,7 +38,7 @@ inline constexpr uint32_t kCoarseNodes = node_count(kCoarseSubdivision),
 // numbered tile by tile, a tile being a run and those below it: what is near on the map is near in memory
 // too, and links within a tile are short.
 struct PatchSet {
-  Patches kind = Patches::kFacets;
+  PatchKind kind = PatchKind::kFacets;
   uint32_t count = 0;
   // kFacets only:
   uint32_t columns = 0;                       // cells in a row
@@ -48,7 +48,7 @@ struct PatchSet {
   std::vector<std::array<uint16_t, 2>> fine;  // bits of every run's cells: facets of either half cut finely
 };
 
-PatchSet make_patches(const Surface& surface, Patches kind);
+PatchSet make_patches(const Surface& surface, PatchKind kind);
 
 // Nodes are numbered alike on all facets: first the six at the corners and the middles of the sides, row by
 // row, then the nine more of a finely cut facet. Coordinates on a facet are barycentric: u of its corner 1, v
@@ -101,7 +101,7 @@ std::array<PatchShare, 3> patch_shares(const PatchSet& patches, uint32_t facet, 
 
 // One of them, drawn with its share by `choice` in [0, 1): over many hits the same as a link to each, at a
 // third of the links.
-uint32_t draw_patch(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double choice);
+uint32_t sample_patch(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double choice);
 
 // Where on its facet a node looks from: in a small copy of the facet at the node. A point exactly on a corner
 // belongs to all facets around it, and what it sees depends on whose it is. point: on the facet, uniform.

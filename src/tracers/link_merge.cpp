@@ -12,7 +12,7 @@ int settle_index(int i, int n, Edge edge) {
   return edge == Edge::kWrap ? wrap_index(i, n) : std::clamp(i, 0, n - 1);
 }
 
-void add_link(const Surface& surface, int x, int y, double weight, std::vector<Link>& links) {
+void add_link(const Surface& surface, int x, int y, double weight, std::vector<FormFactor>& links) {
   if (weight <= 0) return;
   const int i = settle_index(x, surface.width(), surface.edge),
             j = settle_index(y, surface.height(), surface.edge);
@@ -31,13 +31,13 @@ constexpr double kNearParts = 16;
 // Leaves each patch once, in order of its first link, weights summed in double in the order of the links. A
 // hash table of the patches met so far: most rays of a row meet a patch that another one met, and sorting
 // them all costs more.
-void sum_equal_patches(std::vector<Link>& links) {
+void sum_equal_patches(std::vector<FormFactor>& links) {
   thread_local std::vector<uint32_t> slots;  // scratch: index into links of the patch in this slot
   thread_local std::vector<double> sums;
   const size_t slot_count = std::bit_ceil(2 * links.size());
   slots.assign(slot_count, kFree);
   sums.clear();
-  for (const Link link : links) {
+  for (const FormFactor link : links) {
     // Fibonacci hashing (Knuth, TAOCP 3, 6.4): neighbouring patches spread over the table.
     size_t slot = (link.patch * 0x9e3779b1u) >> 7 & (slot_count - 1);
     while (slots[slot] != kFree && links[slots[slot]].patch != link.patch)
@@ -56,14 +56,14 @@ void sum_equal_patches(std::vector<Link>& links) {
 // So few links are sorted faster one by one, each into its place among those before it.
 constexpr size_t kFewLinks = 32;
 
-void combine_few(std::vector<Link>& links) {
+void combine_few(std::vector<FormFactor>& links) {
   struct Sum {
     uint32_t patch;
     double weight;
   };
   std::array<Sum, kFewLinks> sums;
   size_t count = 0;
-  for (const Link link : links) {
+  for (const FormFactor link : links) {
     size_t place = count;
     while (place > 0 && sums[place - 1].patch >= link.patch) --place;
     if (place < count && sums[place].patch == link.patch) {
@@ -80,13 +80,14 @@ void combine_few(std::vector<Link>& links) {
 
 }  // namespace
 
-void add_nearest_link(const Surface& surface, glm::dvec2 position, double weight, std::vector<Link>& links) {
+void add_nearest_link(const Surface& surface, glm::dvec2 position, double weight,
+                      std::vector<FormFactor>& links) {
   add_link(surface, static_cast<int>(std::floor(position.x + 0.5)),
            static_cast<int>(std::floor(position.y + 0.5)), weight, links);
 }
 
 void add_bilinear_links(const Surface& surface, glm::dvec2 position, double weight,
-                        std::vector<Link>& links) {
+                        std::vector<FormFactor>& links) {
   const int x = static_cast<int>(std::floor(position.x)), y = static_cast<int>(std::floor(position.y));
   const double fx = position.x - x, fy = position.y - y;
   add_link(surface, x, y, weight * (1 - fx) * (1 - fy), links);
@@ -96,9 +97,9 @@ void add_bilinear_links(const Surface& surface, glm::dvec2 position, double weig
 }
 
 void add_node_links(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double distance_texels,
-                    double choice, double weight, std::vector<Link>& links) {
+                    double choice, double weight, std::vector<FormFactor>& links) {
   if (distance_texels >= kNear) {
-    links.push_back({draw_patch(patches, facet, uv, choice), static_cast<float>(weight)});
+    links.push_back({sample_patch(patches, facet, uv, choice), static_cast<float>(weight)});
     return;
   }
   double parts_left = kNearParts, below = choice;
@@ -113,10 +114,11 @@ void add_node_links(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, doub
   }
 }
 
-void combine_links(std::vector<Link>& links) {
+void combine_links(std::vector<FormFactor>& links) {
   if (links.size() <= kFewLinks) return combine_few(links);
   sum_equal_patches(links);
-  std::sort(links.begin(), links.end(), [](const Link& a, const Link& b) { return a.patch < b.patch; });
+  std::sort(links.begin(), links.end(),
+            [](const FormFactor& a, const FormFactor& b) { return a.patch < b.patch; });
 }
 
 void merge_links(Row& row) {
@@ -126,8 +128,8 @@ void merge_links(Row& row) {
   }
   combine_links(row.links);
   double total = 0;
-  Link* largest = &row.links.front();
-  for (Link& link : row.links) {
+  FormFactor* largest = &row.links.front();
+  for (FormFactor& link : row.links) {
     total += static_cast<double>(link.weight);
     if (link.weight > largest->weight) largest = &link;
   }

@@ -48,7 +48,7 @@ struct RayOptions {
   double cone_degrees = 180;  // full aperture about the normal, (0, 180]
   double max_distance_m = std::numeric_limits<double>::infinity();  // hits beyond are sky, > 0
   DirectionSet directions = DirectionSet::kUniform;                 // of texels; nodes always use kCosine
-  Patches patches = Patches::kFacets;
+  PatchKind patch_kind = PatchKind::kFacets;
   TexelLinks texel_links = TexelLinks::kBilinear;
   uint64_t seed = 0;
 };

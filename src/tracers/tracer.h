@@ -17,7 +17,7 @@
 namespace hemibake {
 
 // E_{b+1} of the receiver gets weight · E_b of the patch.
-struct Link {
+struct FormFactor {
   uint32_t patch;
   float weight;
 };
@@ -25,10 +25,10 @@ struct Link {
 // What one receiver sees. Σ weights + direct_over_pi = 1 to rounding (with the march's published weights up
 // to 2, see tracers/march/march.h).
 struct Row {
-  double visible_fraction = 0;  // α, uniform fraction of the hemisphere about the normal that is sky, 0..1
-  double direct_over_pi = 0;    // E₀/π, cosine-weighted fraction, 0..1
-  glm::dvec3 bent_normal{0};    // unit mean direction of the sky seen; the normal itself where none is seen
-  std::vector<Link> links;      // ascending by patch, each patch once; empty where links were not asked for
+  double visible_fraction = 0;    // α, uniform fraction of the hemisphere about the normal that is sky, 0..1
+  double direct_over_pi = 0;      // E₀/π, cosine-weighted fraction, 0..1
+  glm::dvec3 bent_normal{0};      // unit mean direction of the sky seen; the normal itself where none is seen
+  std::vector<FormFactor> links;  // ascending by patch, each patch once; empty where links were not asked for
 };
 
 // One ray of a texel, for replay.
@@ -45,7 +45,7 @@ struct RayRecord {
 
 struct TracerCounts {
   uint64_t rays = 0;  // rays (or azimuths) traced
-  uint64_t cut_short =
+  uint64_t truncated =
       0;  // rays still below the highest texel where the tracer stops following them, taken for sky
 };
 
@@ -57,7 +57,10 @@ struct TexelTile {
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  virtual const PatchSet& patches() const = 0;
+  // The surface the tracer was made for.
+  virtual const Surface& surface() const = 0;
+  // The patches that form factors lead to.
+  virtual const PatchSet& patch_set() const = 0;
   // Fills `row`, its links only if `with_links`. Adds to `counts`.
   virtual void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const = 0;
   virtual void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const = 0;
@@ -68,10 +71,10 @@ class Tracer {
     for (size_t i = 0; i < rows.size(); ++i)
       trace_texel(first + static_cast<uint32_t>(i), with_links, rows[i], counts);
   }
-  // Rows without links of a tile of the map, `map_width` texels wide, one row of the tile after the other:
+  // Rows without links of a tile of the map, one row of the tile after the other:
   // the same as one by one, for tracers that answer receivers near each other faster.
-  virtual void trace_tile(uint32_t map_width, const TexelTile& tile, std::span<Row> rows,
-                          TracerCounts& counts) const {
+  virtual void trace_tile(const TexelTile& tile, std::span<Row> rows, TracerCounts& counts) const {
+    const uint32_t map_width = static_cast<uint32_t>(surface().width());
     for (uint32_t j = 0; j < tile.height; ++j)
       trace_texels((tile.y + j) * map_width + tile.x, false, rows.subspan(j * tile.width, tile.width),
                    counts);

@@ -17,8 +17,8 @@ constexpr int kCutRays = 256;     // of the runs cut short at a distance
 constexpr int kPlainSlices = 32;  // azimuths of the runs that are about something else
 
 // What a bake with this tracer answers.
-RunPlanes trace_planes(const Tracer& tracer, const Surface& surface, Patches patches, int bounces) {
-  Visibility seen = trace_surface(tracer, surface.width(), surface.height(), patches, bounces > kNoBounces);
+RunPlanes trace_planes(const Tracer& tracer, int bounces) {
+  LightTransport seen = trace_surface(tracer, bounces > kNoBounces);
   RunPlanes planes;
   planes.work = seen.counts.rays;
   if (bounces > kNoBounces) {
@@ -41,12 +41,12 @@ TradeRun ray_run(const RayOptions& rays, int bounces) {
   run.settings["rays"] = rays.rays;
   run.settings["directions"] = name_of(rays.directions);
   if (bounces > kNoBounces) run.settings["bounces"] = bounces;
-  if (bounces > kNoBounces && rays.patches == Patches::kTexels)
+  if (bounces > kNoBounces && rays.patch_kind == PatchKind::kTexels)
     run.settings["texel-links"] = rays.texel_links == TexelLinks::kNearest ? "nearest" : "bilinear";
   run.abscissa_name = "rays";
   run.abscissa = rays.rays;
   run.perform = [rays, bounces](const Surface& surface, const Grid<float>&) {
-    return trace_planes(*make_embree_tracer(surface, rays), surface, rays.patches, bounces);
+    return trace_planes(*make_embree_tracer(surface, rays), bounces);
   };
   return run;
 }
@@ -56,12 +56,12 @@ TradeRun slice_run(const SliceOptions& slices, int bounces) {
   run.method = bounces > kNoBounces ? "slice-light" : "slice";
   run.settings["azimuths"] = slices.azimuths;
   if (bounces > kNoBounces) run.settings["bounces"] = bounces;
-  if (bounces > kNoBounces && slices.patches == Patches::kTexels)
+  if (bounces > kNoBounces && slices.patch_kind == PatchKind::kTexels)
     run.settings["texel-links"] = slices.texel_links == TexelLinks::kNearest ? "nearest" : "bilinear";
   run.abscissa_name = "azimuths";
   run.abscissa = slices.azimuths;
   run.perform = [slices, bounces](const Surface& surface, const Grid<float>&) {
-    return trace_planes(*make_slice_tracer(surface, slices), surface, slices.patches, bounces);
+    return trace_planes(*make_slice_tracer(surface, slices), bounces);
   };
   return run;
 }
@@ -76,7 +76,7 @@ TradeRun march_run(int rays) {
   run.perform = [rays](const Surface& surface, const Grid<float>&) {
     MarchOptions march;
     march.rays = rays;
-    return trace_planes(*make_march_tracer(surface, march), surface, Patches::kTexels, kNoBounces);
+    return trace_planes(*make_march_tracer(surface, march), kNoBounces);
   };
   return run;
 }
@@ -92,7 +92,7 @@ TradeRun cut_run(double ranges) {
     rays.rays = kCutRays;
     const double range_m = height_range_m(surface);
     if (range_m > 0) rays.max_distance_m = ranges * range_m;
-    return trace_planes(*make_embree_tracer(surface, rays), surface, rays.patches, kNoBounces);
+    return trace_planes(*make_embree_tracer(surface, rays), kNoBounces);
   };
   return run;
 }
@@ -106,7 +106,7 @@ TradeRun resolution_run(double factor, int bounces) {
       std::string(factor < 1 ? "half" : "double") + "-resolution" + (bounces > kNoBounces ? "-light" : "");
   run.perform = [slices, factor, bounces](const Surface& surface, const Grid<float>&) {
     const Surface other = resample_surface(surface, factor);
-    RunPlanes planes = trace_planes(*make_slice_tracer(other, slices), other, slices.patches, bounces);
+    RunPlanes planes = trace_planes(*make_slice_tracer(other, slices), bounces);
     for (const NamedPlane& named : named_planes())
       if (Grid<float>& plane = named.of(planes); !plane.empty())
         plane = resample_plane(plane, surface.width(), surface.height(), surface.edge);
@@ -178,12 +178,12 @@ void add_light_runs(Effort effort, bool can_halve, std::vector<TradeRun>& runs) 
   for (const TexelLinks links : {TexelLinks::kNearest, TexelLinks::kBilinear}) {
     RayOptions rays;
     rays.rays = quick ? 16 : 256;
-    rays.patches = Patches::kTexels;
+    rays.patch_kind = PatchKind::kTexels;
     rays.texel_links = links;
     runs.push_back(ray_run(rays, kTradeBounces));
     SliceOptions slices;
     slices.azimuths = quick ? top_light_azimuths(effort) : kPlainSlices;
-    slices.patches = Patches::kTexels;
+    slices.patch_kind = PatchKind::kTexels;
     slices.texel_links = links;
     runs.push_back(slice_run(slices, kTradeBounces));
   }

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/plan.h"
 #include "core/constants.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
+#include "reference/comparison.h"
 #include "tracers/slice/slice.h"
 #include "trade/errors.h"
 #include "trade/resample.h"
 #include "transport/bounces.h"
-#include "bake/plan.h"
-#include "reference/comparison.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {
@@ -36,7 +36,7 @@ SliceOptions seeded_slices(int azimuths, uint64_t seed) {
 
 RunPlanes see_sky(const Surface& surface, int azimuths, uint64_t seed) {
   const auto tracer = make_slice_tracer(surface, seeded_slices(azimuths, seed));
-  Visibility seen = trace_surface(*tracer, surface.width(), surface.height(), Patches::kFacets, false);
+  LightTransport seen = trace_surface(*tracer, false);
   RunPlanes planes;
   planes.uniform = std::move(seen.visible_fraction);
   planes.cosine = std::move(seen.direct_over_pi);
@@ -50,7 +50,7 @@ struct Lit {
 
 Lit light_up(const Surface& surface, int azimuths, int bounces, uint64_t seed) {
   const auto tracer = make_slice_tracer(surface, seeded_slices(azimuths, seed));
-  Visibility seen = trace_surface(*tracer, surface.width(), surface.height(), Patches::kFacets, true);
+  LightTransport seen = trace_surface(*tracer, true);
   BounceOptions options;
   options.bounces = bounces;
   std::vector<Grid<float>> irradiance = bounce_light(seen, options).irradiance;

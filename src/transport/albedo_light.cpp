@@ -17,12 +17,12 @@ double largest(const std::vector<double>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
 
-void check_sizes(const Links& gather, const Links& patch_links, const DirectLight& direct,
-                 std::span<const float> albedo) {
+void check_sizes(const FormFactorMatrix& final_gather, const FormFactorMatrix& patch_links,
+                 const DirectLight& direct, std::span<const float> albedo) {
   expect_equal(patch_links.columns, patch_links.rows, "columns of the patch links");
-  expect_equal(gather.columns, patch_links.rows, "columns of the gather links");
-  expect_equal(direct.patches.size(), size_t{patch_links.rows}, "patches under direct light");
-  expect_equal(direct.texels.size(), size_t{gather.rows}, "texels under direct light");
+  expect_equal(final_gather.columns, patch_links.rows, "columns of the gather links");
+  expect_equal(direct.patch_light.size(), size_t{patch_links.rows}, "patches under direct light");
+  expect_equal(direct.texel_light.size(), size_t{final_gather.rows}, "texels under direct light");
   expect_equal(albedo.size(), size_t{patch_links.rows}, "albedos");
   for (const float value : albedo)
     if (!(value >= 0 && value <= 1)) fail_expectation("an albedo", static_cast<double>(value), 1);
@@ -32,12 +32,12 @@ void check_sizes(const Links& gather, const Links& patch_links, const DirectLigh
 // (I − W diag(albedo))⁻¹, which has no negative entry. What no row passes on more of than `kept` adds up to
 // at most 1/(1 − kept); where that says little, the sum itself is sought until its residual is at most ½
 // everywhere: the truth is then at most twice as much.
-double largest_sum(const Links& links, std::span<const float> albedo, double kept, int max_products,
-                   int& products) {
+double largest_sum(const FormFactorMatrix& links, std::span<const float> albedo, double kept,
+                   int max_products, int& products) {
   constexpr double kSaysEnough = 10, kResidual = 0.5;
   if (kept < 1 && 1 / (1 - kept) <= kSaysEnough) return 1 / (1 - kept);
   const std::vector<double> ones(links.rows, 1.0);
-  LightSolver solver(links, albedo, std::vector<double>(links.rows), ones);
+  Orthomin solver(links, albedo, std::vector<double>(links.rows), ones);
   while (solver.largest_residual() > kResidual) {
     if (products >= max_products || !solver.step())
       return kept < 1 ? 1 / (1 - kept) : std::numeric_limits<double>::infinity();
@@ -47,11 +47,11 @@ double largest_sum(const Links& links, std::span<const float> albedo, double kep
 }
 
 // Light of the patches after `bounces` bounces; `last` is the last of them by itself.
-void bounce(const Links& links, std::span<const float> albedo, int bounces, std::vector<double>& light,
-            std::vector<double>& last) {
+void bounce(const FormFactorMatrix& links, std::span<const float> albedo, int bounces,
+            std::vector<double>& light, std::vector<double>& last) {
   std::vector<double> next;
   for (int b = 0; b < bounces; ++b) {
-    reflect(links, albedo, last, next);
+    apply_transport(links, albedo, last, next);
     last.swap(next);
     for (size_t i = 0; i < light.size(); ++i) light[i] += last[i];
   }
@@ -59,31 +59,32 @@ void bounce(const Links& links, std::span<const float> albedo, int bounces, std:
 
 }  // namespace
 
-DirectLight uniform_sky(const Visibility& seen) {
+DirectLight uniform_sky(const LightTransport& seen) {
   return {as_double(seen.direct_over_pi.values), as_double(seen.patch_direct())};
 }
 
-AlbedoLight bounce_with_albedo(const Links& gather, const Links& patch_links, const DirectLight& direct,
-                               std::span<const float> albedo, const AlbedoOptions& options) {
-  check_sizes(gather, patch_links, direct, albedo);
+AlbedoLight bounce_with_albedo(const FormFactorMatrix& final_gather, const FormFactorMatrix& patch_links,
+                               const DirectLight& direct, std::span<const float> albedo,
+                               const AlbedoOptions& options) {
+  check_sizes(final_gather, patch_links, direct, albedo);
   AlbedoLight result;
-  result.patches = direct.patches;
-  result.texels = direct.texels;
-  const double unit = largest(direct.patches);
+  result.patch_light = direct.patch_light;
+  result.texel_light = direct.texel_light;
+  const double unit = largest(direct.patch_light);
   if (options.bounces == 0 || unit == 0) return result;
-  std::vector<double> last = direct.patches;
+  std::vector<double> last = direct.patch_light;
   if (options.bounces) {
     // Texels gather their last bounce from the patches of the one before.
-    bounce(patch_links, albedo, *options.bounces - 1, result.patches, last);
+    bounce(patch_links, albedo, *options.bounces - 1, result.patch_light, last);
     result.products = *options.bounces - 1;
   } else {
     std::vector<double> passed_on;
-    reflect(patch_links, albedo, std::vector<double>(patch_links.rows, 1.0), passed_on);
-    reflect(patch_links, albedo, direct.patches, last);
+    apply_transport(patch_links, albedo, std::vector<double>(patch_links.rows, 1.0), passed_on);
+    apply_transport(patch_links, albedo, direct.patch_light, last);
     result.products = 2;
     const double sum =
         largest_sum(patch_links, albedo, largest(passed_on), options.max_products, result.products);
-    LightSolver solver(patch_links, albedo, std::move(result.patches), std::move(last));
+    Orthomin solver(patch_links, albedo, std::move(result.patch_light), std::move(last));
     const auto missing = [&] {
       const double residual = solver.largest_residual();
       return residual > 0 ? residual * sum / unit : 0;
@@ -91,17 +92,17 @@ AlbedoLight bounce_with_albedo(const Links& gather, const Links& patch_links, co
     while (missing() > options.tolerance && result.products < options.max_products && solver.step())
       ++result.products;
     result.missing = missing();
-    result.patches = solver.light();
+    result.patch_light = solver.light();
   }
   std::vector<double> gathered;
-  reflect(gather, albedo, result.patches, gathered);
-  for (size_t i = 0; i < gathered.size(); ++i) result.texels[i] += gathered[i];
+  apply_transport(final_gather, albedo, result.patch_light, gathered);
+  for (size_t i = 0; i < gathered.size(); ++i) result.texel_light[i] += gathered[i];
   return result;
 }
 
-AlbedoLight bounce_with_albedo(const Visibility& seen, std::span<const float> albedo,
+AlbedoLight bounce_with_albedo(const LightTransport& seen, std::span<const float> albedo,
                                const AlbedoOptions& options) {
-  return bounce_with_albedo(seen.gather, seen.patch_links(), uniform_sky(seen), albedo, options);
+  return bounce_with_albedo(seen.final_gather, seen.bounce_matrix(), uniform_sky(seen), albedo, options);
 }
 
 }  // namespace hemibake

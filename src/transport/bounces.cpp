@@ -35,23 +35,23 @@ Grid<float> times_pi(const std::vector<double>& values, int width, int height) {
 
 // Light under way: everything over π.
 struct Flow {
-  const Visibility& seen;
+  const LightTransport& seen;
   bool texels_are_patches;
   std::vector<double> texel_direct;
   std::vector<double> current;  // E_b of the patches
   std::vector<double> sum;      // E_0 + … + E_b of the patches
   std::vector<double> next;
 
-  explicit Flow(const Visibility& visibility)
+  explicit Flow(const LightTransport& visibility)
       : seen(visibility),
-        texels_are_patches(visibility.patches.empty()),
+        texels_are_patches(visibility.patch_form_factors.empty()),
         texel_direct(as_double(visibility.direct_over_pi.values)),
         current(as_double(visibility.patch_direct())),
         sum(current),
         next(current.size()) {}
 
   void bounce() {
-    gather(seen.patch_links(), current, next);
+    multiply(seen.bounce_matrix(), current, next);
     current.swap(next);
     add_to(sum, current);
   }
@@ -62,7 +62,7 @@ struct Flow {
   // Texels under the sky and the light of the patches.
   std::vector<double> gathered(const std::vector<double>& patches) const {
     std::vector<double> total(texel_direct.size());
-    gather(seen.gather, patches, total);
+    multiply(seen.final_gather, patches, total);
     add_to(total, texel_direct);
     return total;
   }
@@ -78,7 +78,7 @@ double worst_either_way(const std::vector<double>& total) {
   return worst;
 }
 
-bool keeps_energy(const Links& links, const std::vector<float>& direct) {
+bool rows_sum_to_one(const FormFactorMatrix& links, const std::vector<float>& direct) {
   const std::vector<double> sums = row_sums(links);
   for (size_t i = 0; i < sums.size(); ++i)
     if (std::abs(sums[i] + static_cast<double>(direct[i]) - 1) > kKeepsEnergy) return false;
@@ -86,7 +86,7 @@ bool keeps_energy(const Links& links, const std::vector<float>& direct) {
 }
 
 // Rows whose one link leads to themselves and loses nothing, ascending.
-std::vector<uint32_t> rows_that_see_only_themselves(const Links& links) {
+std::vector<uint32_t> rows_that_see_only_themselves(const FormFactorMatrix& links) {
   std::vector<uint32_t> closed;
   for (size_t b = 0; b < links.blocks.size(); ++b)
     visit_rows(links, b,
@@ -96,12 +96,12 @@ std::vector<uint32_t> rows_that_see_only_themselves(const Links& links) {
   return closed;
 }
 
-void name_short_texels(const Visibility& seen, double tolerance, Bounces& result) {
+void name_short_texels(const LightTransport& seen, double tolerance, Bounces& result) {
   for (uint32_t texel = 0; texel < result.residual.size(); ++texel)
-    if (static_cast<double>(result.residual[texel]) >= tolerance) result.texels_short.push_back(texel);
-  if (result.texels_short.empty() || !seen.patches.empty()) return;
-  std::ranges::set_intersection(rows_that_see_only_themselves(seen.gather), result.texels_short,
-                                std::back_inserter(result.texels_closed));
+    if (static_cast<double>(result.residual[texel]) >= tolerance) result.unconverged_texels.push_back(texel);
+  if (result.unconverged_texels.empty() || !seen.patch_form_factors.empty()) return;
+  std::ranges::set_intersection(rows_that_see_only_themselves(seen.final_gather), result.unconverged_texels,
+                                std::back_inserter(result.enclosed_texels));
 }
 
 // Bounce after bounce, for rows that do not keep the energy (the march's published weights).
@@ -127,9 +127,9 @@ void converge(Flow& flow, const BounceOptions& options, Bounces& result, std::ve
   Progress progress("converging", static_cast<uint64_t>(options.max_bounces), "product");
   // One bounce more is what the sum so far is short of, as the solver counts.
   std::vector<double> more;
-  reflect(flow.seen.patch_links(), {}, flow.current, more);
+  apply_transport(flow.seen.bounce_matrix(), {}, flow.current, more);
   ++result.bounces_made;
-  LightSolver solver(flow.seen.patch_links(), {}, std::move(flow.sum), std::move(more));
+  Orthomin solver(flow.seen.bounce_matrix(), {}, std::move(flow.sum), std::move(more));
   std::vector<double> solved;
   bool goes_on = true;
   while (goes_on) {
@@ -149,8 +149,8 @@ void converge(Flow& flow, const BounceOptions& options, Bounces& result, std::ve
 
 }  // namespace
 
-void settle_residual(const std::function<double(size_t)>& total_over_pi, int width, int height,
-                     Bounces& result) {
+void compute_residual(const std::function<double(size_t)>& total_over_pi, int width, int height,
+                      Bounces& result) {
   result.residual = Grid<float>(width, height);
   Moments residuals;
   for (size_t i = 0; i < result.residual.size(); ++i) {
@@ -165,7 +165,7 @@ void settle_residual(const std::function<double(size_t)>& total_over_pi, int wid
   result.mean_residual = residuals.mean;
 }
 
-Bounces bounce_light(const Visibility& seen, const BounceOptions& options) {
+Bounces bounce_light(const LightTransport& seen, const BounceOptions& options) {
   const int width = seen.direct_over_pi.width, height = seen.direct_over_pi.height;
   Bounces result;
   Flow flow(seen);
@@ -175,7 +175,7 @@ Bounces bounce_light(const Visibility& seen, const BounceOptions& options) {
   Progress progress("bouncing", static_cast<uint64_t>(options.bounces), "bounce");
   // Texel bounce b gathers patch bounce b − 1.
   for (int b = 1; b <= options.bounces; ++b) {
-    gather(seen.gather, flow.current, texel_light);
+    multiply(seen.final_gather, flow.current, texel_light);
     add_to(total, texel_light);
     result.irradiance.push_back(times_pi(texel_light, width, height));
     flow.bounce();
@@ -184,8 +184,8 @@ Bounces bounce_light(const Visibility& seen, const BounceOptions& options) {
   result.bounces_made = options.bounces;
 
   if (options.converge_tolerance) {
-    if (keeps_energy(seen.gather, seen.direct_over_pi.values) &&
-        keeps_energy(seen.patch_links(), seen.patch_direct())) {
+    if (rows_sum_to_one(seen.final_gather, seen.direct_over_pi.values) &&
+        rows_sum_to_one(seen.bounce_matrix(), seen.patch_direct())) {
       converge(flow, options, result, total);
     } else {
       converge_by_bounces(flow, options, result, total);
@@ -193,7 +193,7 @@ Bounces bounce_light(const Visibility& seen, const BounceOptions& options) {
   }
 
   result.total = times_pi(total, width, height);
-  settle_residual([&](size_t i) { return total[i]; }, width, height, result);
+  compute_residual([&](size_t i) { return total[i]; }, width, height, result);
   if (options.converge_tolerance) name_short_texels(seen, *options.converge_tolerance, result);
   return result;
 }

@@ -29,13 +29,13 @@ struct Bounces {
   uint32_t worst_texel = 0;
   // Only with a tolerance: texels whose residual is not below it, and those among them whose every link leads
   // to themselves, so that no number of bounces would help.
-  std::vector<uint32_t> texels_short, texels_closed;
+  std::vector<uint32_t> unconverged_texels, enclosed_texels;
 };
 
-Bounces bounce_light(const Visibility& seen, const BounceOptions& options);
+Bounces bounce_light(const LightTransport& seen, const BounceOptions& options);
 
 // The residual of every texel, their mean and the worst, from the sum of a texel's light over π.
-void settle_residual(const std::function<double(size_t)>& total_over_pi, int width, int height,
-                     Bounces& result);
+void compute_residual(const std::function<double(size_t)>& total_over_pi, int width, int height,
+                      Bounces& result);
 
 }  // namespace hemibake

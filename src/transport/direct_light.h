@@ -7,6 +7,6 @@
 namespace hemibake {
 
 // E₀ of every texel as irradiance and total.
-Bounces direct_light(const Visibility& seen);
+Bounces direct_light(const LightTransport& seen);
 
 }  // namespace hemibake

@@ -31,7 +31,7 @@ TracerCounts sum(const std::vector<TracerCounts>& counts) {
   TracerCounts total;
   for (const TracerCounts& c : counts) {
     total.rays += c.rays;
-    total.cut_short += c.cut_short;
+    total.truncated += c.truncated;
   }
   return total;
 }
@@ -39,9 +39,9 @@ TracerCounts sum(const std::vector<TracerCounts>& counts) {
 // Traces rows [0, row_count), `together` blocks at once: neighbours that the tracer may answer together;
 // store(index, row) keeps what the caller wants of each.
 template <class TraceRows, class Store>
-TracerCounts trace_blocks(uint32_t row_count, uint32_t together, Links& links, Progress& progress,
+TracerCounts trace_blocks(uint32_t row_count, uint32_t together, FormFactorMatrix& links, Progress& progress,
                           const TraceRows& trace_rows, const Store& store) {
-  const uint32_t rows_together = together * Links::kRowsPerBlock;
+  const uint32_t rows_together = together * FormFactorMatrix::kRowsPerBlock;
   const size_t pieces = (size_t{row_count} + rows_together - 1) / rows_together;
   std::vector<TracerCounts> counts(pieces);
   parallel_for(pieces, 1, [&](size_t first_piece, size_t last_piece) {
@@ -53,9 +53,9 @@ TracerCounts trace_blocks(uint32_t row_count, uint32_t together, Links& links, P
       for (uint32_t i = 0; i < piece_rows.size(); ++i) {
         check_row(begin + i, piece_rows[i]);
         store(begin + i, piece_rows[i]);
-        const size_t block = (begin + i) / Links::kRowsPerBlock;
+        const size_t block = (begin + i) / FormFactorMatrix::kRowsPerBlock;
         append_row(links.blocks[block], piece_rows[i].links);
-        if ((begin + i + 1) % Links::kRowsPerBlock == 0 || begin + i + 1 == row_count)
+        if ((begin + i + 1) % FormFactorMatrix::kRowsPerBlock == 0 || begin + i + 1 == row_count)
           finish_block(links, block);
       }
       progress.advance(piece_rows.size());
@@ -74,8 +74,9 @@ uint32_t height_of_tiles(uint32_t columns, uint32_t height) {
 
 // Traces every texel tile by tile; store(texel, row) keeps what the caller wants of each.
 template <class Store>
-TracerCounts trace_tiles(const Tracer& tracer, uint32_t width, uint32_t height, Progress& progress,
-                         const Store& store) {
+TracerCounts trace_tiles(const Tracer& tracer, Progress& progress, const Store& store) {
+  const uint32_t width = static_cast<uint32_t>(tracer.surface().width());
+  const uint32_t height = static_cast<uint32_t>(tracer.surface().height());
   const uint32_t columns = (width + kTileWidth - 1) / kTileWidth;
   const uint32_t tile_height = height_of_tiles(columns, height);
   const uint32_t rows_of_tiles = (height + tile_height - 1) / tile_height;
@@ -87,7 +88,7 @@ TracerCounts trace_tiles(const Tracer& tracer, uint32_t width, uint32_t height, 
                      static_cast<uint32_t>(t / columns) * tile_height, kTileWidth, tile_height};
       tile.width = std::min(tile.width, width - tile.x);
       tile.height = std::min(tile.height, height - tile.y);
-      tracer.trace_tile(width, tile, {rows.data(), size_t{tile.width} * tile.height}, counts[t]);
+      tracer.trace_tile(tile, {rows.data(), size_t{tile.width} * tile.height}, counts[t]);
       for (uint32_t j = 0; j < tile.height; ++j)
         for (uint32_t i = 0; i < tile.width; ++i) {
           const uint32_t texel = (tile.y + j) * width + tile.x + i;
@@ -103,16 +104,16 @@ TracerCounts trace_tiles(const Tracer& tracer, uint32_t width, uint32_t height, 
 
 }  // namespace
 
-Visibility trace_surface(const Tracer& tracer, int width, int height, Patches patches, bool with_links,
-                         const std::shared_ptr<SpillFile>& spill) {
-  Visibility seen;
+LightTransport trace_surface(const Tracer& tracer, bool with_links, const std::shared_ptr<SpillFile>& spill) {
+  const int width = tracer.surface().width(), height = tracer.surface().height();
+  LightTransport seen;
   seen.visible_fraction = Grid<float>(width, height);
   seen.direct_over_pi = Grid<float>(width, height);
   seen.bent_normals = Grid<glm::vec3>(width, height);
   const uint32_t texels = static_cast<uint32_t>(seen.visible_fraction.size());
-  const bool trace_patches = with_links && patches == Patches::kFacets;
+  const bool trace_patches = with_links && tracer.patch_set().kind == PatchKind::kFacets;
 
-  const uint32_t patch_count = tracer.patches().count;
+  const uint32_t patch_count = tracer.patch_set().count;
   Progress progress("tracing", uint64_t{texels} + (trace_patches ? patch_count : 0), "receiver");
 
   const auto store_texel = [&](uint32_t texel, const Row& row) {
@@ -121,25 +122,24 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
     seen.bent_normals[texel] = glm::vec3(row.bent_normal);
   };
   if (!with_links) {
-    seen.counts = trace_tiles(tracer, static_cast<uint32_t>(width), static_cast<uint32_t>(height), progress,
-                              store_texel);
+    seen.counts = trace_tiles(tracer, progress, store_texel);
     return seen;
   }
-  seen.gather = make_links(texels, patch_count, spill);
+  seen.final_gather = make_form_factors(texels, patch_count, spill);
   seen.counts = trace_blocks(
-      texels, 1, seen.gather, progress,
+      texels, 1, seen.final_gather, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_texels(first, true, rows, counts);
       },
       store_texel);
   if (!trace_patches) return seen;
 
-  const uint32_t blocks = patch_count / Links::kRowsPerBlock;
+  const uint32_t blocks = patch_count / FormFactorMatrix::kRowsPerBlock;
   const uint32_t together = std::clamp(blocks / kFewestPieces, 1u, kMostBlocksTogether);
-  seen.patches = make_links(patch_count, patch_count, spill);
+  seen.patch_form_factors = make_form_factors(patch_count, patch_count, spill);
   seen.patch_direct_over_pi.resize(patch_count);
   const TracerCounts of_patches = trace_blocks(
-      patch_count, together, seen.patches, progress,
+      patch_count, together, seen.patch_form_factors, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_patches(first, true, rows, counts);
       },
@@ -147,7 +147,7 @@ Visibility trace_surface(const Tracer& tracer, int width, int height, Patches pa
         seen.patch_direct_over_pi[patch] = static_cast<float>(row.direct_over_pi);
       });
   seen.counts.rays += of_patches.rays;
-  seen.counts.cut_short += of_patches.cut_short;
+  seen.counts.truncated += of_patches.truncated;
   return seen;
 }
 

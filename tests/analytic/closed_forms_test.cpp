@@ -22,26 +22,26 @@ namespace hemibake {
 namespace {
 
 struct Traced {
-  Visibility seen;
+  LightTransport seen;
   Bounces bounces;
 };
 
-Traced trace_light(const Surface& surface, Patches patches, int rays, int bounces) {
+Traced trace_light(const Surface& surface, PatchKind patches, int rays, int bounces) {
   RayOptions options;
   options.rays = rays;
-  options.patches = patches;
+  options.patch_kind = patches;
   const auto tracer = make_embree_tracer(surface, options);
-  Traced traced{trace_surface(*tracer, surface.width(), surface.height(), patches, true), {}};
+  Traced traced{trace_surface(*tracer, true), {}};
   traced.bounces = bounce_light(traced.seen, {bounces, std::nullopt, bounces});
   return traced;
 }
 
 // E_b/π of the patches, b = 0…bounces.
-std::vector<std::vector<double>> patch_light(const Visibility& seen, int bounces) {
+std::vector<std::vector<double>> patch_light(const LightTransport& seen, int bounces) {
   std::vector<std::vector<double>> light = {{seen.patch_direct().begin(), seen.patch_direct().end()}};
   for (int b = 0; b < bounces; ++b) {
     light.emplace_back(light.back().size());
-    gather(seen.patch_links(), light[static_cast<size_t>(b)], light.back());
+    multiply(seen.bounce_matrix(), light[static_cast<size_t>(b)], light.back());
   }
   return light;
 }
@@ -52,7 +52,7 @@ double over_pi(const Grid<float>& irradiance, size_t texel) {
 
 // ---- The pit that is a part of a sphere: E_b/π = C(1−C)^b in all of it.
 
-class SphericalCap : public testing::TestWithParam<Patches> {};
+class SphericalCap : public testing::TestWithParam<PatchKind> {};
 
 TEST_P(SphericalCap, EveryBounceIsFlatOverThePit) {
   constexpr int kSide = 256, kRings = 10;
@@ -88,7 +88,7 @@ TEST_P(SphericalCap, EveryBounceIsFlatOverThePit) {
     EXPECT_NEAR(pit.mean / expected, 1, 0.01 + rim) << "bounce " << b;
   }
 }
-INSTANTIATE_TEST_SUITE_P(Patches, SphericalCap, testing::Values(Patches::kFacets, Patches::kTexels));
+INSTANTIATE_TEST_SUITE_P(PatchKind, SphericalCap, testing::Values(PatchKind::kFacets, PatchKind::kTexels));
 
 // ---- Tiled V-grooves.
 
@@ -126,9 +126,9 @@ class Groove : public testing::TestWithParam<GrooveCase> {
 };
 
 TEST_P(Groove, WallMeansOfFacets) {
-  const Traced traced = trace_light(surface_, Patches::kFacets, kRays, 4);
+  const Traced traced = trace_light(surface_, PatchKind::kFacets, kRays, 4);
   const auto light = patch_light(traced.seen, 4);
-  const PatchSet patches = make_patches(surface_, Patches::kFacets);
+  const PatchSet patches = make_patches(surface_, PatchKind::kFacets);
   for (size_t b = 0; b < 5; ++b) {
     const double expected = GetParam().wall_means[b];
     // The bar of issue 2. 128 facets from vertex to ridge, light linear between nodes half a texel apart.
@@ -139,7 +139,7 @@ TEST_P(Groove, WallMeansOfFacets) {
 }
 
 TEST_P(Groove, WallMeansOfTexels) {
-  const Traced traced = trace_light(surface_, Patches::kTexels, kRays, 4);
+  const Traced traced = trace_light(surface_, PatchKind::kTexels, kRays, 4);
   for (size_t b = 0; b < 5; ++b)
     // As above; and vertex and ridge, two texels of 128, re-emit the light of their upright normals, wrong by
     // less than a quarter, once a bounce.
@@ -149,7 +149,7 @@ TEST_P(Groove, WallMeansOfTexels) {
 }
 
 TEST_P(Groove, TexelsAcrossTheWall) {
-  const Traced traced = trace_light(surface_, Patches::kTexels, kRays, 0);
+  const Traced traced = trace_light(surface_, PatchKind::kTexels, kRays, 0);
   const double length = 1;
   for (int i = 1; i < groove_.wall_width; ++i) {
     const double s = length * i / groove_.wall_width;

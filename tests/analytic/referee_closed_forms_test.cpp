@@ -8,10 +8,10 @@
 #include "analytic/groove_reference.h"
 #include "analytic/spherical_pit.h"
 #include "core/constants.h"
-#include "surface/synthetic/synthetic.h"
-#include "surface/synthetic/analytic.h"
 #include "reference/path_tracer.h"
-#include "tracers/texel_sample.h"
+#include "surface/synthetic/analytic.h"
+#include "surface/synthetic/synthetic.h"
+#include "reference/texel_sample.h"
 
 namespace hemibake {
 namespace {
@@ -41,7 +41,7 @@ void expect_groove(double psi, int paths) {
   options.paths = paths;
   options.bounces = kBounces;
   const RefereeEstimates measured = referee_area(make_groove(psi), options);
-  EXPECT_EQ(measured.lost_rays, 0u);
+  EXPECT_EQ(measured.truncated_rays, 0u);
   const std::vector<double> truth =
       groove_wall_means(psi, 40);  // after 40 the rest at albedo 0.5 is below 10⁻¹²
   double total = 0;

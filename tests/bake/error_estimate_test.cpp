@@ -7,25 +7,25 @@
 
 #include "core/constants.h"
 #include "core/statistics.h"
+#include "reference/path_tracer.h"
 #include "support/maps.h"
 #include "tracers/embree/embree.h"
-#include "reference/path_tracer.h"
 
 namespace hemibake {
 namespace {
 
 struct Baked {
-  Visibility seen;
+  LightTransport seen;
   Bounces bounces;
   ErrorEstimate errors;
 };
 
-Baked bake(const Surface& surface, int rays, Patches patches = Patches::kFacets) {
+Baked bake(const Surface& surface, int rays, PatchKind patches = PatchKind::kFacets) {
   RayOptions options;
   options.rays = rays;
-  options.patches = patches;
+  options.patch_kind = patches;
   const auto tracer = make_embree_tracer(surface, options);
-  Baked baked{trace_surface(*tracer, surface.width(), surface.height(), patches, true), {}, {}};
+  Baked baked{trace_surface(*tracer, true), {}, {}};
   baked.bounces = bounce_light(baked.seen, {});
   baked.errors = estimate_errors(*tracer->reseeded(99), baked.seen, baked.bounces);
   return baked;
@@ -125,7 +125,7 @@ TEST(ErrorEstimate, CurveIsBiasedAsMuchAsSaid) {
 TEST(ErrorEstimate, TexelsAsPatchesAndTinyMaps) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 9}, {33, 2}}) {
     const Surface surface = white_noise_surface(width, height, 0.1);
-    for (const Patches patches : {Patches::kFacets, Patches::kTexels}) {
+    for (const PatchKind patches : {PatchKind::kFacets, PatchKind::kTexels}) {
       const ErrorEstimate e = bake(surface, 16, patches).errors;
       for (const double value :
            {e.ao_rays, e.direct_rays, e.first_rays, e.mean_first_rays, e.first_patches, e.half_patches,

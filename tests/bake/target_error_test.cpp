@@ -23,14 +23,14 @@ TargetOptions slice_target(const Surface& surface, double error) {
   return options;
 }
 
-Visibility bake(const Surface& surface, const TargetOptions& options, int rays, uint64_t seed) {
-  return trace_surface(*options.make_tracer(rays, seed), surface.width(), surface.height(), options.patches,
-                       options.with_light);
+LightTransport bake(const Surface& surface, const TargetOptions& options, int rays, uint64_t seed) {
+  return trace_surface(*options.make_tracer(rays, seed), options.with_light);
 }
 
 // Over the whole map, against a bake with many azimuths and bounces.
-double true_error(const Surface& surface, const TargetOptions& options, const Visibility& seen, int bounces) {
-  const auto planes_of = [](const Visibility& v, int count) {
+double true_error(const Surface& surface, const TargetOptions& options, const LightTransport& seen,
+                  int bounces) {
+  const auto planes_of = [](const LightTransport& v, int count) {
     RunPlanes planes;
     planes.uniform = v.visible_fraction;
     planes.cosine = v.direct_over_pi;
@@ -52,7 +52,7 @@ void expect_reached(const Surface& surface, double error) {
   const TargetOptions options = slice_target(surface, error);
   const TargetChoice choice = choose_for_target(surface, options);
   ASSERT_TRUE(choice.reachable);
-  const Visibility chosen = bake(surface, options, choice.rays, 99);
+  const LightTransport chosen = bake(surface, options, choice.rays, 99);
   const double reached = true_error(surface, options, chosen, choice.bounces);
   EXPECT_LE(reached, 1.25 * error) << explain(choice, options);
   // Half as many would not have done: what was chosen is at most twice the cheapest.

@@ -56,13 +56,12 @@ Rate copy_rate() {
 void run(const BenchMap& map, int azimuths, const Rate& copy) {
   SliceOptions options;
   options.azimuths = azimuths;
-  const Visibility seen = trace_surface(*make_slice_tracer(map.surface, options), map.surface.width(),
-                                        map.surface.height(), Patches::kFacets, true);
-  const Links& links = seen.patches;
+  const LightTransport seen = trace_surface(*make_slice_tracer(map.surface, options), true);
+  const FormFactorMatrix& links = seen.patch_form_factors;
   std::vector<double> light(seen.patch_direct().begin(), seen.patch_direct().end()), next(light.size());
   const Rate rate = best_rate(static_cast<double>(kBounces * links.stored_bytes()), [&] {
     for (int b = 0; b < kBounces; ++b) {
-      gather(links, light, next);
+      multiply(links, light, next);
       light.swap(next);
     }
   });

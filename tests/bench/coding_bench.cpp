@@ -21,7 +21,7 @@ constexpr int kBounces = 20;
 
 struct Rows {
   std::vector<size_t> begin{0};
-  std::vector<Link> links;
+  std::vector<FormFactor> links;
 };
 
 void multiply(const Rows& rows, const std::vector<double>& values, std::vector<double>& out) {
@@ -36,12 +36,12 @@ void multiply(const Rows& rows, const std::vector<double>& values, std::vector<d
   });
 }
 
-Links pack(const Rows& rows, uint32_t columns) {
-  Links links = make_links(static_cast<uint32_t>(rows.begin.size() - 1), columns);
+FormFactorMatrix pack(const Rows& rows, uint32_t columns) {
+  FormFactorMatrix links = make_form_factors(static_cast<uint32_t>(rows.begin.size() - 1), columns);
   parallel_for(links.blocks.size(), 1, [&](size_t first, size_t last) {
     for (size_t b = first; b < last; ++b) {
-      const size_t end = std::min<size_t>(links.rows, (b + 1) * Links::kRowsPerBlock);
-      for (size_t i = b * Links::kRowsPerBlock; i < end; ++i)
+      const size_t end = std::min<size_t>(links.rows, (b + 1) * FormFactorMatrix::kRowsPerBlock);
+      for (size_t i = b * FormFactorMatrix::kRowsPerBlock; i < end; ++i)
         append_row(links.blocks[b],
                    std::span(rows.links).subspan(rows.begin[i], rows.begin[i + 1] - rows.begin[i]));
       finish_block(links, b);
@@ -51,7 +51,7 @@ Links pack(const Rows& rows, uint32_t columns) {
 }
 
 // Largest |packed / given − 1| of the sums of rows.
-double row_sum_error(const Rows& rows, const Links& links) {
+double row_sum_error(const Rows& rows, const FormFactorMatrix& links) {
   const std::vector<double> sums = row_sums(links);
   double worst = 0;
   for (size_t i = 0; i < sums.size(); ++i) {
@@ -65,7 +65,7 @@ double row_sum_error(const Rows& rows, const Links& links) {
 
 // All that the tracer sees.
 struct Scene {
-  Rows gather, patches;
+  Rows final_gather, patches;
   std::vector<double> direct;  // of the patches
 };
 
@@ -99,19 +99,19 @@ Scene trace_scene(const Tracer& tracer, uint32_t texels) {
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_texels(first, true, rows, counts);
       },
-      scene.gather, nullptr);
+      scene.final_gather, nullptr);
   trace_rows(
-      tracer.patches().count,
+      tracer.patch_set().count,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_patches(first, true, rows, counts);
       },
-      scene.patches, &scene.direct);
+      scene.patch_form_factors, &scene.direct);
   return scene;
 }
 
 // All bounced light of the texels at an albedo, over π, of either kind of rows.
-template <class Patches, class Gather>
-std::vector<double> bounced(const Scene& scene, double albedo, const Patches& patches,
+template <class PatchKind, class Gather>
+std::vector<double> bounced(const Scene& scene, double albedo, const PatchKind& patches,
                             const Gather& gather_in) {
   std::vector<double> light = scene.direct, sum = light, next, texels;
   for (int b = 1; b < kBounces; ++b) {
@@ -133,31 +133,34 @@ void run(const std::string& map, const std::string& tracer_name) {
   const Surface surface = bench_map(map);
   const auto tracer = bench_tracer(surface, tracer_name);
   const Scene scene = trace_scene(*tracer, surface.texel_count());
-  const Links gather_links = pack(scene.gather, tracer->patches().count),
-              patch_links = pack(scene.patches, tracer->patches().count);
+  const FormFactorMatrix gather_links = pack(scene.final_gather, tracer->patch_set().count),
+                         patch_links = pack(scene.patch_form_factors, tracer->patch_set().count);
   const auto bytes = static_cast<double>(gather_links.stored_bytes() + patch_links.stored_bytes());
   const auto links = static_cast<double>(gather_links.count() + patch_links.count());
-  const auto given = static_cast<double>(scene.gather.links.size() + scene.patches.links.size());
-  const auto each = [](const Links& matrix) {
+  const auto given =
+      static_cast<double>(scene.final_gather.links.size() + scene.patch_form_factors.links.size());
+  const auto each = [](const FormFactorMatrix& matrix) {
     return static_cast<double>(matrix.stored_bytes()) / static_cast<double>(matrix.count());
   };
   fmt::print("{:8} {:8} {:8.1f} {:8.2f} % {:8.3f} {:8.3f} {:8.3f} {:10.1e}", map, tracer_name, 1e-6 * links,
              100 * (1 - links / given), bytes / links, each(gather_links), each(patch_links),
-             std::max(row_sum_error(scene.gather, gather_links), row_sum_error(scene.patches, patch_links)));
+             std::max(row_sum_error(scene.final_gather, gather_links),
+                      row_sum_error(scene.patch_form_factors, patch_links)));
   const auto through_rows = [](const Rows& rows) {
     return [&](const std::vector<double>& values, std::vector<double>& out) { multiply(rows, values, out); };
   };
-  const auto through_links = [](const Links& matrix) {
+  const auto through_links = [](const FormFactorMatrix& matrix) {
     return [&](const std::vector<double>& values, std::vector<double>& out) {
       out.resize(matrix.rows);
-      gather(matrix, values, out);
+      multiply(matrix, values, out);
     };
   };
   for (const double albedo : {0.5, 0.9, 1.0})
     fmt::print(
         " {:9.1e}",
-        rms_of_difference(bounced(scene, albedo, through_rows(scene.patches), through_rows(scene.gather)),
-                          bounced(scene, albedo, through_links(patch_links), through_links(gather_links))));
+        rms_of_difference(
+            bounced(scene, albedo, through_rows(scene.patch_form_factors), through_rows(scene.final_gather)),
+            bounced(scene, albedo, through_links(patch_links), through_links(gather_links))));
   fmt::print("\n");
 }
 

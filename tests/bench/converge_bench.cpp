@@ -45,28 +45,28 @@ struct Cost {
 };
 
 struct Light {
-  const Visibility& seen;
+  const LightTransport& seen;
   std::vector<double> last, sum, next;
 
-  explicit Light(const Visibility& visibility)
+  explicit Light(const LightTransport& visibility)
       : seen(visibility), last(seen.patch_direct().begin(), seen.patch_direct().end()), sum(last) {}
 
   void bounce() {
-    reflect(seen.patch_links(), {}, last, next);
+    apply_transport(seen.bounce_matrix(), {}, last, next);
     last.swap(next);
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += last[i];
   }
 };
 
-std::vector<double> texels_under(const Visibility& seen, const std::vector<double>& patches) {
-  std::vector<double> light(seen.gather.rows);
-  gather(seen.gather, patches, light);
+std::vector<double> texels_under(const LightTransport& seen, const std::vector<double>& patches) {
+  std::vector<double> light(seen.final_gather.rows);
+  multiply(seen.final_gather, patches, light);
   for (size_t i = 0; i < light.size(); ++i) light[i] += static_cast<double>(seen.direct_over_pi[i]);
   return light;
 }
 
 // Without the tests a bake makes.
-Cost plain(const Visibility& seen) {
+Cost plain(const LightTransport& seen) {
   Light light(seen);
   double half_worst = 0, worst = 1, cpu = 0;
   int bounces = 0;
@@ -87,14 +87,14 @@ Cost plain(const Visibility& seen) {
   return {all, cpu * all / bounces};
 }
 
-Cost accelerated(const Visibility& seen) {
+Cost accelerated(const LightTransport& seen) {
   const double start = process_cpu_seconds();
   Light light(seen);
   for (int b = 0; b < kStored; ++b) light.bounce();
-  reflect(seen.patch_links(), {}, light.last, light.next);
-  LightSolver solver(seen.patch_links(), {}, std::move(light.sum), std::move(light.next));
+  apply_transport(seen.bounce_matrix(), {}, light.last, light.next);
+  Orthomin solver(seen.bounce_matrix(), {}, std::move(light.sum), std::move(light.next));
   const double test =
-      static_cast<double>(seen.gather.count()) / static_cast<double>(seen.patch_links().count());
+      static_cast<double>(seen.final_gather.count()) / static_cast<double>(seen.bounce_matrix().count());
   Cost cost{kStored + 1, process_cpu_seconds() - start};
   bool goes_on = true;
   for (int steps = 0, tests = 0; goes_on && steps < kMostSteps;) {
@@ -132,9 +132,9 @@ void run(const std::string& map, const std::string& tracer_name, int rays) {
     options.rays = rays;
     tracer = make_embree_tracer(surface, options);
   }
-  const Visibility seen = trace_surface(*tracer, surface.width(), surface.height(), Patches::kFacets, true);
+  const LightTransport seen = trace_surface(*tracer, true);
   fmt::print("{}, {} {}: {:.1f} M patches, {:.1f} M links between them\n", map, tracer_name, rays,
-             1e-6 * seen.patch_links().rows, 1e-6 * static_cast<double>(seen.patch_links().count()));
+             1e-6 * seen.bounce_matrix().rows, 1e-6 * static_cast<double>(seen.bounce_matrix().count()));
   const Cost fast = accelerated(seen), slow = plain(seen);
   fmt::print("  products {:.1f} against {:.0f}: 1/{:.1f}; cpu-s {:.1f} against {:.1f}: 1/{:.1f}\n",
              fast.products, slow.products, slow.products / fast.products, fast.cpu_seconds, slow.cpu_seconds,

@@ -48,13 +48,12 @@ Surface refine(const Surface& surface, int factor, bool smooth) {
 
 using Means = std::array<double, 3>;  // of E₀/π, E₁/π, total at albedo ½ over π
 
-Means bake(const Surface& surface, int factor, Patches patches, int rays) {
+Means bake(const Surface& surface, int factor, PatchKind patches, int rays) {
   RayOptions options;
   options.rays = rays;
-  options.patches = patches;
+  options.patch_kind = patches;
   const auto tracer = make_embree_tracer(surface, options);
-  const Bounces bounces = bounce_light(
-      trace_surface(*tracer, surface.width(), surface.height(), patches, true), {10, std::nullopt, 10});
+  const Bounces bounces = bounce_light(trace_surface(*tracer, true), {10, std::nullopt, 10});
   Means means{};
   double count = 0;
   for (int y = 0; y < surface.height(); y += factor)
@@ -70,7 +69,7 @@ Means bake(const Surface& surface, int factor, Patches patches, int rays) {
   return means;
 }
 
-void study(const BenchMap& map, bool smooth, Patches patches, int rays) {
+void study(const BenchMap& map, bool smooth, PatchKind patches, int rays) {
   std::array<Means, 3> at;
   for (size_t i = 0; i < 3; ++i) {
     const int factor = 1 << i;
@@ -83,8 +82,8 @@ void study(const BenchMap& map, bool smooth, Patches patches, int rays) {
     const std::string order = first * second > 0 ? fmt::format("{:.1f}", std::log2(first / second)) : "-";
     fmt::print(
         "{:14} {:9} {:7} {:13} {:.5f} {:.5f} {:.5f}  order {:>4}  limit {:.5f}\n", map.name,
-        smooth ? "smooth" : "bilinear", patches == Patches::kFacets ? "facets" : "texels", names[q], at[0][q],
-        at[1][q], at[2][q], order,
+        smooth ? "smooth" : "bilinear", patches == PatchKind::kFacets ? "facets" : "texels", names[q],
+        at[0][q], at[1][q], at[2][q], order,
         first * second > 0 && first / second > 1.2 ? at[2][q] - second / (first / second - 1) : at[2][q]);
   }
 }
@@ -99,5 +98,6 @@ int main(int argc, char** argv) {
   maps.push_back({"noise 0.1 m", synthetic_surface(SyntheticKind::kNoise, side, side, 0.1)});
   for (const BenchMap& map : maps)
     for (const bool smooth : {false, true})
-      for (const Patches patches : {Patches::kFacets, Patches::kTexels}) study(map, smooth, patches, rays);
+      for (const PatchKind patches : {PatchKind::kFacets, PatchKind::kTexels})
+        study(map, smooth, patches, rays);
 }

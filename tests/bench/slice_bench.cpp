@@ -38,8 +38,7 @@ struct Planes {
 
 Planes trace(const Tracer& tracer, const Surface& surface, bool with_links) {
   const double start = process_cpu_seconds();
-  const Visibility seen =
-      trace_surface(tracer, surface.width(), surface.height(), Patches::kFacets, with_links);
+  const LightTransport seen = trace_surface(tracer, with_links);
   Planes planes{seen.visible_fraction.values, seen.direct_over_pi.values, {}, process_cpu_seconds() - start};
   if (with_links) {
     BounceOptions options;

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "bake/target_error.h"
 #include "support/maps.h"
 #include "tracers/embree/embree.h"
 #include "tracers/slice/slice.h"
 #include "trade/reference.h"
 #include "trade/scored_run.h"
-#include "bake/target_error.h"
 #include "transport/bounces.h"
 
 namespace hemibake {
@@ -32,8 +32,7 @@ double error_with(const Surface& surface, const TargetOptions& options, int rays
                   const RunPlanes& truth) {
   double sum = 0;
   for (const uint64_t seed : kHeldOutSeeds) {
-    const Visibility seen = trace_surface(*options.make_tracer(rays, seed), surface.width(), surface.height(),
-                                          options.patches, true);
+    const LightTransport seen = trace_surface(*options.make_tracer(rays, seed), true);
     RunPlanes planes;
     BounceOptions bounce;
     bounce.bounces = bounces;

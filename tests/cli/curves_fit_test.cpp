@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/constants.h"
-#include "model/closed_forms.h"
 #include "io/bake_file.h"
 #include "io/curves_file.h"
 #include "io/io_testing.h"
+#include "model/closed_forms.h"
 #include "support/run_command.h"
 
 namespace hemibake {

@@ -31,7 +31,7 @@ TEST_F(Interrupt, WhileTracing) {
   expect_clean_end("run map.exr -o results", "INT");
 }
 
-// Links between texels of a rough map trap light: a million bounces do not bring it out.
+// FormFactorMatrix between texels of a rough map trap light: a million bounces do not bring it out.
 TEST_F(Interrupt, WhileBouncing) {
   write_map("map.exr", SyntheticKind::kNoise, 64, 64);
   expect_clean_end(

@@ -108,7 +108,8 @@ TEST_F(Render, ConstantAlbedoMapIsPowersOfAlbedo) {
     EXPECT_LT(difference(fmt::format("powers/bounce_{:02}.exr", b), fmt::format("again/bounce_{:02}.exr", b)),
               1.2e-7)
         << b;
-  // Links read back are the same to 10⁻⁴ of their quantum, which is a twelfth of the mean weight or less.
+  // FormFactorMatrix read back are the same to 10⁻⁴ of their quantum, which is a twelfth of the mean weight
+  // or less.
   EXPECT_LT(difference("again/truth.exr", "links/truth.exr"), 1e-4 / 12);
 }
 
@@ -156,7 +157,8 @@ TEST_F(Render, HarmonicsOfAUniformSky) {
   run_well("render bake.exr -o uniform --pictures light");
   run_well("render bake.exr -o sh --sky sh sky.txt --links links.h5 --sky-rays 1 --pictures light");
   EXPECT_LT(difference("uniform/ao_only.exr", "sh/ao_only.exr"), 1e-6);
-  // Links read back are the same to 10⁻⁴ of their quantum, which is a twelfth of the mean weight or less.
+  // FormFactorMatrix read back are the same to 10⁻⁴ of their quantum, which is a twelfth of the mean weight
+  // or less.
   EXPECT_LT(difference("uniform/truth.exr", "sh/truth.exr"), 1e-4 / 12);
 }
 

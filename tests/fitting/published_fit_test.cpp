@@ -6,9 +6,9 @@
 
 #include "core/constants.h"
 #include "core/error.h"
-#include "model/closed_forms.h"
 #include "fitting/fit.h"
 #include "fitting/published.h"
+#include "model/closed_forms.h"
 
 namespace hemibake {
 namespace {

@@ -26,16 +26,16 @@ namespace {
 using testing::EndsWith;
 using testing::HasSubstr;
 
-// Rows of 0 to 8 links; several blocks where rows > Links::kRowsPerBlock.
-Links random_links(uint32_t rows, uint32_t columns, unsigned seed) {
+// Rows of 0 to 8 links; several blocks where rows > FormFactorMatrix::kRowsPerBlock.
+FormFactorMatrix random_links(uint32_t rows, uint32_t columns, unsigned seed) {
   std::mt19937 random(seed);
-  Links links = make_links(rows, columns);
+  FormFactorMatrix links = make_form_factors(rows, columns);
   for (uint32_t row = 0; row < rows; ++row) {
-    std::vector<Link> entries;
+    std::vector<FormFactor> entries;
     for (uint32_t patch = random() % 7; patch < columns && entries.size() < random() % 9;
          patch += 1 + random() % 50)
       entries.push_back({patch, static_cast<float>(1 + random() % 65535) / 65536});
-    append_row(links.blocks[row / Links::kRowsPerBlock], entries);
+    append_row(links.blocks[row / FormFactorMatrix::kRowsPerBlock], entries);
   }
   finish_blocks(links);
   return links;
@@ -54,7 +54,7 @@ Provenance sample_provenance() {
           {"converged", false}, {"long", std::string(100000, 'x')}};
 }
 
-void expect_same_links(const Links& a, const Links& b) {
+void expect_same_links(const FormFactorMatrix& a, const FormFactorMatrix& b) {
   EXPECT_EQ(a.rows, b.rows);
   EXPECT_EQ(a.columns, b.columns);
   ASSERT_EQ(a.blocks.size(), b.blocks.size());
@@ -64,7 +64,7 @@ void expect_same_links(const Links& a, const Links& b) {
     unpack_block(a.blocks[i], rows_a);
     unpack_block(b.blocks[i], rows_b);
     EXPECT_EQ(rows_a.row_begin, rows_b.row_begin);
-    EXPECT_EQ(rows_a.patches, rows_b.patches);
+    EXPECT_EQ(rows_a.columns, rows_b.columns);
     // Packed again most rows are multiples of what they were multiples of, within 10⁻⁴ of it; few that lost
     // links are rounded again, by less than a twelfth of their mean weight (links_pack.cpp).
     ASSERT_EQ(rows_a.weights.size(), rows_b.weights.size());
@@ -85,13 +85,13 @@ void expect_same_links(const Links& a, const Links& b) {
 
 TEST(LinksFile, RoundTripOverSeveralBlocks) {
   const TemporaryFolder folder;
-  const Links gather = random_links(2500, 5000, 1);
-  const Links patches = random_links(5000, 5000, 2);
-  write_links(folder / "links.h5", gather, &patches, some_direct(5000), sample_provenance());
+  const FormFactorMatrix final_gather = random_links(2500, 5000, 1);
+  const FormFactorMatrix patches = random_links(5000, 5000, 2);
+  write_links(folder / "links.h5", final_gather, &patches, some_direct(5000), sample_provenance());
   const LinksFile read = read_links(folder / "links.h5");
-  expect_same_links(read.gather, gather);
-  ASSERT_TRUE(read.patches.has_value());
-  expect_same_links(*read.patches, patches);
+  expect_same_links(read.final_gather, final_gather);
+  ASSERT_TRUE(read.patch_form_factors.has_value());
+  expect_same_links(*read.patch_form_factors, patches);
   EXPECT_EQ(read.direct, some_direct(5000));
   EXPECT_EQ(read.provenance.dump(), sample_provenance().dump());
   EXPECT_EQ(folder.count(), 1u);
@@ -99,48 +99,48 @@ TEST(LinksFile, RoundTripOverSeveralBlocks) {
 
 TEST(LinksFile, OneMatrixIsStoredOnce) {
   const TemporaryFolder folder;
-  const Links gather = random_links(3000, 3000, 1);
-  write_links(folder / "one.h5", gather, nullptr, some_direct(3000), {{"version", "0"}});
-  write_links(folder / "two.h5", gather, &gather, some_direct(3000), {{"version", "0"}});
+  const FormFactorMatrix final_gather = random_links(3000, 3000, 1);
+  write_links(folder / "one.h5", final_gather, nullptr, some_direct(3000), {{"version", "0"}});
+  write_links(folder / "two.h5", final_gather, &final_gather, some_direct(3000), {{"version", "0"}});
   const LinksFile read = read_links(folder / "one.h5");
-  EXPECT_FALSE(read.patches.has_value());
-  expect_same_links(read.gather, gather);
+  EXPECT_FALSE(read.patch_form_factors.has_value());
+  expect_same_links(read.final_gather, final_gather);
   const auto size = [&](const char* name) { return std::filesystem::file_size(folder / name); };
   EXPECT_LT(static_cast<double>(size("one.h5")), 0.6 * static_cast<double>(size("two.h5")));
 }
 
 TEST(LinksFile, NoLinksAtAll) {
   const TemporaryFolder folder;
-  Links flat = make_links(4, 4);
+  FormFactorMatrix flat = make_form_factors(4, 4);
   for (int row = 0; row < 4; ++row) append_row(flat.blocks[0], {});
   finish_blocks(flat);
   write_links(folder / "flat.h5", flat, nullptr, some_direct(4), {{"version", "0"}});
-  expect_same_links(read_links(folder / "flat.h5").gather, flat);
+  expect_same_links(read_links(folder / "flat.h5").final_gather, flat);
 }
 
 TEST(LinksFile, SameBytesEverySecond) {
   const TemporaryFolder folder;
-  const Links gather = random_links(1500, 1500, 1);
-  write_links(folder / "a.h5", gather, nullptr, some_direct(1500), sample_provenance());
+  const FormFactorMatrix final_gather = random_links(1500, 1500, 1);
+  write_links(folder / "a.h5", final_gather, nullptr, some_direct(1500), sample_provenance());
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // times in HDF5 are whole seconds
-  write_links(folder / "b.h5", gather, nullptr, some_direct(1500), sample_provenance());
+  write_links(folder / "b.h5", final_gather, nullptr, some_direct(1500), sample_provenance());
   EXPECT_EQ(read_bytes(folder / "a.h5"), read_bytes(folder / "b.h5"));
 }
 
 TEST(LinksFile, WrongUseIsABug) {
   const TemporaryFolder folder;
-  Links gather = random_links(1500, 3000, 1);
+  FormFactorMatrix final_gather = random_links(1500, 3000, 1);
   const auto bug = [&](const std::vector<float>& direct) {
     return error_of<std::logic_error>([&] {
-      const Links patches = random_links(3000, 3000, 2);
-      write_links(folder / "links.h5", gather, &patches, direct, {{"version", "0"}});
+      const FormFactorMatrix patches = random_links(3000, 3000, 2);
+      write_links(folder / "links.h5", final_gather, &patches, direct, {{"version", "0"}});
     });
   };
   EXPECT_THAT(bug(some_direct(2999)), HasSubstr("values of direct is 2999, expected 3000"));
   std::vector<float> infinite = some_direct(3000);
   infinite[7] = INFINITY;
   EXPECT_THAT(bug(infinite), HasSubstr("E0 of a patch is inf"));
-  --gather.blocks[1].rows;
+  --final_gather.blocks[1].rows;
   EXPECT_THAT(bug(some_direct(3000)), HasSubstr("rows of gather is 1499, expected 1500"));
   EXPECT_THROW(
       write_links(folder / "links.h5", random_links(3, 4, 1), nullptr, some_direct(4), {{"version", "0"}}),
@@ -179,13 +179,13 @@ TEST(LinksFile, CutShortAnywhereIsRefused) {
 class DamagedLinks : public testing::Test {
  protected:
   std::string refusal_after(const std::function<void(hid_t)>& change) {
-    Links gather = make_links(3, 3);
-    append_row(gather.blocks[0], std::vector<Link>{{1, 0.25f}, {2, 0.5f}});
-    append_row(gather.blocks[0], {});
-    append_row(gather.blocks[0], std::vector<Link>{{0, 0.125f}});
-    finish_blocks(gather);
+    FormFactorMatrix final_gather = make_form_factors(3, 3);
+    append_row(final_gather.blocks[0], std::vector<FormFactor>{{1, 0.25f}, {2, 0.5f}});
+    append_row(final_gather.blocks[0], {});
+    append_row(final_gather.blocks[0], std::vector<FormFactor>{{0, 0.125f}});
+    finish_blocks(final_gather);
     const auto path = folder_ / "links.h5";
-    write_links(path, gather, nullptr, some_direct(3), {{"version", "0"}});
+    write_links(path, final_gather, nullptr, some_direct(3), {{"version", "0"}});
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     change(file);
     H5Fclose(file);
@@ -293,9 +293,9 @@ TEST(LinksFile, OpensInSciPy) {
   if (std::system((std::string(kPython) + " -c 'import h5py, scipy.sparse' 2>/dev/null").c_str()) != 0)
     GTEST_SKIP() << "python3 with h5py and scipy is not there";
   const TemporaryFolder folder;
-  const Links gather = random_links(2000, 2000, 3);
-  write_links(folder / "links.h5", gather, nullptr, some_direct(2000), sample_provenance());
-  std::vector<double> sums = row_sums(gather);
+  const FormFactorMatrix final_gather = random_links(2000, 2000, 3);
+  write_links(folder / "links.h5", final_gather, nullptr, some_direct(2000), sample_provenance());
+  std::vector<double> sums = row_sums(final_gather);
   double expected = 0;
   for (size_t i = 0; i < sums.size(); ++i) expected += sums[i] * static_cast<double>(i + 1);
   write_bytes(folder / "read.py", R"(

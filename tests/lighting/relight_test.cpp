@@ -16,29 +16,29 @@ namespace hemibake {
 namespace {
 
 // Two texels that are patches and see each other and the sky.
-Visibility two_patches(double to_second, double to_first) {
-  Visibility seen;
+LightTransport two_patches(double to_second, double to_first) {
+  LightTransport seen;
   seen.direct_over_pi = Grid<float>(2, 1);
   seen.direct_over_pi[0] = static_cast<float>(1 - to_second);
   seen.direct_over_pi[1] = static_cast<float>(1 - to_first);
-  seen.gather = make_links(2, 2);
-  const Link first{1, static_cast<float>(to_second)}, second{0, static_cast<float>(to_first)};
-  append_row(seen.gather.blocks[0], {&first, 1});
-  append_row(seen.gather.blocks[0], {&second, 1});
-  finish_blocks(seen.gather);
+  seen.final_gather = make_form_factors(2, 2);
+  const FormFactor first{1, static_cast<float>(to_second)}, second{0, static_cast<float>(to_first)};
+  append_row(seen.final_gather.blocks[0], {&first, 1});
+  append_row(seen.final_gather.blocks[0], {&second, 1});
+  finish_blocks(seen.final_gather);
   return seen;
 }
 
 // E₁ = e₁ + w₁₂ ρ₂ E₂ and E₂ = e₂ + w₂₁ ρ₁ E₁, each with its neighbour's albedo.
 TEST(Relight, TwoPatchesWithTheirOwnAlbedo) {
-  const Visibility seen = two_patches(0.75, 0.5);
+  const LightTransport seen = two_patches(0.75, 0.5);
   const ColoredLight direct{{glm::dvec3(1, 2, 0), glm::dvec3(3, 0, 0)},
                             {glm::dvec3(1, 2, 0), glm::dvec3(3, 0, 0)}};
   const std::vector<glm::vec3> albedo = {{0.5f, 0.25f, 1}, {0.25f, 1, 1}};
   const Relit relit = relight_over_links(seen, direct, albedo, 60);
   for (int c = 0; c < 3; ++c) {
     const double a = 0.75 * static_cast<double>(albedo[1][c]), b = 0.5 * static_cast<double>(albedo[0][c]);
-    const double e1 = direct.texels[0][c], e2 = direct.texels[1][c];
+    const double e1 = direct.texel_light[0][c], e2 = direct.texel_light[1][c];
     EXPECT_NEAR(relit.total[0][c], (e1 + a * e2) / (1 - a * b), 1e-6) << c;
     EXPECT_NEAR(relit.total[1][c], (e2 + b * e1) / (1 - a * b), 1e-6) << c;
   }
@@ -51,21 +51,21 @@ class RelightWall : public testing::Test {
     static const Surface map = synthetic_surface(SyntheticKind::kBricks, 24, 20, 0.1);
     return map;
   }
-  static const Visibility& seen() {
-    static const Visibility traced = [] {
+  static const LightTransport& seen() {
+    static const LightTransport traced = [] {
       RayOptions options;
       options.rays = 64;
       const auto tracer = make_embree_tracer(surface(), options);
-      return trace_surface(*tracer, 24, 20, Patches::kFacets, true);
+      return trace_surface(*tracer, true);
     }();
     return traced;
   }
   static ColoredLight uniform_light() {
     ColoredLight light;
     for (const float direct : seen().direct_over_pi.values)
-      light.texels.emplace_back(kPi * static_cast<double>(direct));
+      light.texel_light.emplace_back(kPi * static_cast<double>(direct));
     for (const float direct : seen().patch_direct())
-      light.patches.emplace_back(kPi * static_cast<double>(direct));
+      light.patch_light.emplace_back(kPi * static_cast<double>(direct));
     return light;
   }
 };
@@ -77,7 +77,7 @@ TEST_F(RelightWall, ConstantMapIsPowersOfAlbedo) {
   const Relit powers = relight_constant(bounce_light(seen(), {}).irradiance, albedo);
   const Albedo map{glm::vec3(0), Grid<glm::vec3>(24, 20, albedo)};
   const Relit over_links = relight_over_links(
-      seen(), uniform_light(), albedo_of_patches(surface(), map, make_patches(surface(), Patches::kFacets)),
+      seen(), uniform_light(), albedo_of_patches(surface(), map, make_patches(surface(), PatchKind::kFacets)),
       20, kPi);
   ASSERT_EQ(powers.bounces.size(), over_links.bounces.size());
   for (size_t b = 0; b < powers.bounces.size(); ++b)
@@ -93,8 +93,8 @@ TEST_F(RelightWall, ConstantMapIsPowersOfAlbedo) {
 }
 
 TEST_F(RelightWall, BlackWallReflectsNothing) {
-  const Relit relit = relight_over_links(seen(), uniform_light(),
-                                         std::vector<glm::vec3>(seen().gather.columns, glm::vec3(0)), 3);
+  const Relit relit = relight_over_links(
+      seen(), uniform_light(), std::vector<glm::vec3>(seen().final_gather.columns, glm::vec3(0)), 3);
   for (size_t i = 0; i < relit.total.size(); ++i) EXPECT_EQ(relit.total[i], relit.bounces[0][i]);
   EXPECT_EQ(relit.largest_rest, 0);
 }
@@ -136,7 +136,7 @@ TEST(Relight, PatchesHaveTheAlbedoBetweenTheTexels) {
   albedo.map = Grid<glm::vec3>(3, 3);
   albedo.map(2, 2) = glm::vec3(0.9f, 0.3f, 0);
   // A tent of height 1 over texel 2,2: linear over the ground, 1 − the distance along x, y or the diagonal.
-  const PatchSet nodes = make_patches(surface, Patches::kFacets);
+  const PatchSet nodes = make_patches(surface, PatchKind::kFacets);
   const auto values = albedo_of_patches(surface, albedo, nodes);
   for (uint32_t patch = 0; patch < nodes.count; ++patch) {
     const glm::dvec2 at = patch_position_texels(surface, nodes, patch) - 2.0;
@@ -145,12 +145,12 @@ TEST(Relight, PatchesHaveTheAlbedoBetweenTheTexels) {
     EXPECT_NEAR(values[patch].x, 0.9 * tent, 1e-6) << at.x << ' ' << at.y;
     EXPECT_NEAR(values[patch].y, 0.3 * tent, 1e-6);
   }
-  EXPECT_EQ(albedo_of_patches(surface, albedo, make_patches(surface, Patches::kTexels))[8].x, 0.9f);
+  EXPECT_EQ(albedo_of_patches(surface, albedo, make_patches(surface, PatchKind::kTexels))[8].x, 0.9f);
 }
 
 // AO darkens the sky's light only: a sun adds the same to every picture.
-TEST(Wall, NoAoDarkensTheSun) {
-  Wall wall;
+TEST(ShadedScene, NoAoDarkensTheSun) {
+  ShadedScene wall;
   wall.bake.width = 3;
   wall.bake.height = 1;
   wall.bake.visible_fraction = Grid<float>(3, 1);

@@ -42,15 +42,16 @@ glm::dvec3 mean_of(const std::vector<glm::dvec3>& light) {
 TEST(SkyLight, FlatGround) {
   const Surface surface = flat_surface();
   const std::vector<float> open(surface.texel_count(), 1.0f),
-      open_patches(make_patches(surface, Patches::kFacets).count, 1.0f);
+      open_patches(make_patches(surface, PatchKind::kFacets).count, 1.0f);
   const Radiance radiance = [](const glm::dvec3& d) { return glm::dvec3(1 + d.z); };
   const SkyLightOptions options{1024, 0, glm::dvec3(1)};
   // Stratified in cosθ²: the error of a monotonic integrand is below its range over the number of rays.
   for (const glm::dvec3& e : sky_light_of_texels(surface, open, radiance, options))
     EXPECT_NEAR(e.y, kPi + 2 * kPi / 3, kPi / 1024);
-  for (const glm::dvec3& e : sky_light_of_patches(surface, make_patches(surface, Patches::kFacets),
+  for (const glm::dvec3& e : sky_light_of_patches(surface, make_patches(surface, PatchKind::kFacets),
                                                   open_patches, radiance, options))
-    EXPECT_NEAR(e.y, kPi + 2 * kPi / 3, kPi / rays_per_node(1024, kCoarseSubdivision, node_at(kCoarseSubdivision, 1, 0)));
+    EXPECT_NEAR(e.y, kPi + 2 * kPi / 3,
+                kPi / rays_per_node(1024, kCoarseSubdivision, node_at(kCoarseSubdivision, 1, 0)));
 }
 
 // A sky that is the mean everywhere takes the tracer's own E₀, whatever the rays meet.
@@ -132,7 +133,7 @@ TEST(SunShare, FlatGround) {
   for (const double share : sun_share_of_texels(surface, direction_of(1, 0.3)))
     EXPECT_NEAR(share, std::sin(0.3), 1e-7);
   for (const double share :
-       sun_share_of_patches(surface, make_patches(surface, Patches::kFacets), direction_of(1, 0.3)))
+       sun_share_of_patches(surface, make_patches(surface, PatchKind::kFacets), direction_of(1, 0.3)))
     EXPECT_NEAR(share, std::sin(0.3), 1e-12);
 }
 

@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "core/color.h"
 #include "core/constants.h"
 #include "io/picture_text.h"
 #include "pictures/camera.h"
 #include "pictures/color_map.h"
 #include "pictures/figure.h"
-#include "core/color.h"
 #include "support/maps.h"
 
 namespace hemibake {

@@ -49,7 +49,7 @@ class PublishedMarch : public testing::Test {
     Surface surface = make_surface(std::move(filtered), 1, kAmplitude, Edge::kWrap);
     surface.normals = decode_normal_map(encoded_normals_, NormalY::kUp);
     const auto tracer = make_march_tracer(surface, options);
-    const Visibility seen = trace_surface(*tracer, surface.width(), surface.height(), Patches::kTexels, true);
+    const LightTransport seen = trace_surface(*tracer, true);
     BounceOptions bounces;
     bounces.bounces = kBounces;
     Bake bake;

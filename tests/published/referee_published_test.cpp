@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "io/image_io.h"
-#include "surface/normals.h"
 #include "reference/path_tracer.h"
-#include "tracers/texel_sample.h"
+#include "surface/normals.h"
+#include "reference/texel_sample.h"
 
 namespace hemibake {
 namespace {

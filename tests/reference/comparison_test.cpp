@@ -7,8 +7,8 @@
 
 #include "core/constants.h"
 #include "core/error.h"
-#include "surface/synthetic/synthetic.h"
 #include "reference/path_tracer.h"
+#include "surface/synthetic/synthetic.h"
 
 namespace hemibake {
 namespace {

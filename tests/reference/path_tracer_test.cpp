@@ -10,12 +10,12 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "reference/lit_path_tracer.h"
+#include "reference/random.h"
 #include "surface/facets.h"
 #include "surface/synthetic/synthetic.h"
 #include "tracers/embree/embree.h"
-#include "reference/lit_path_tracer.h"
-#include "reference/random.h"
-#include "tracers/texel_sample.h"
+#include "reference/texel_sample.h"
 
 namespace hemibake {
 namespace {
@@ -123,7 +123,7 @@ TEST(Referee, AllLightArrivesInTheEnd) {
   options.paths = 128;
   options.totals = {{1, RefereeTotal::kUnlimited}};
   const RefereeEstimates measured = referee_texels(surface, all_texels(surface), options);
-  ASSERT_EQ(measured.lost_rays, 0u);
+  ASSERT_EQ(measured.truncated_rays, 0u);
   for (size_t i = 0; i < measured.receivers(); ++i)
     EXPECT_NEAR(measured.mean[measured.index(i, 3)], 1, 1e-12);
 }

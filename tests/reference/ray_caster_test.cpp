@@ -5,8 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "surface/facets.h"
 #include "reference/random.h"
+#include "surface/facets.h"
 
 namespace hemibake {
 namespace {
@@ -50,7 +50,7 @@ NearestHit brute_force(const Surface& surface, const glm::dvec3& start, const gl
 
 // Rays from random points on the surface in all directions, against brute force.
 void compare_with_brute_force(const Surface& surface, int tiles) {
-  const HeightWalk walk(surface);
+  const HeightFieldRayCaster walk(surface);
   RefereeRandom random(3, 1, 4);
   int hits = 0;
   for (int i = 0; i < 1000; ++i) {
@@ -61,9 +61,9 @@ void compare_with_brute_force(const Surface& surface, int tiles) {
     const glm::dvec3 direction = random_cosine_direction({0, 0, i % 2 == 0 ? 1 : 0.01}, random);
     const NearestHit expected = brute_force(surface, at.position, direction, tiles);
     SurfacePoint hit;
-    const WalkEnd end = walk.follow(at.position, direction, hit);
-    ASSERT_EQ(end == WalkEnd::kHit, std::isfinite(expected.distance)) << "ray " << i;
-    if (end != WalkEnd::kHit) continue;
+    const RayOutcome end = walk.follow(at.position, direction, hit);
+    ASSERT_EQ(end == RayOutcome::kHit, std::isfinite(expected.distance)) << "ray " << i;
+    if (end != RayOutcome::kHit) continue;
     ++hits;
     const glm::dvec3 position = at.position + expected.distance * direction;
     const double x = std::remainder(hit.position.x - position.x, surface.width());
@@ -74,64 +74,64 @@ void compare_with_brute_force(const Surface& surface, int tiles) {
   EXPECT_GT(hits, 100);
 }
 
-TEST(HeightWalk, AgreesWithEveryTriangleOfAWrappingMap) {
+TEST(HeightFieldRayCaster, AgreesWithEveryTriangleOfAWrappingMap) {
   compare_with_brute_force(random_surface(5, 3, 4, Edge::kWrap, 1), 40);
 }
 
-TEST(HeightWalk, AgreesWithEveryTriangleOfAnOpenMap) {
+TEST(HeightFieldRayCaster, AgreesWithEveryTriangleOfAnOpenMap) {
   compare_with_brute_force(random_surface(23, 18, 6, Edge::kOpen, 2), 0);
 }
 
-TEST(HeightWalk, AgreesWithEveryTriangleWhereBlocksAreSkipped) {
+TEST(HeightFieldRayCaster, AgreesWithEveryTriangleWhereBlocksAreSkipped) {
   Surface surface = random_surface(37, 29, 0.5, Edge::kOpen, 3);
   // Two towers far apart: most of the way is skipped in blocks.
   surface.heights_m(3, 4) = surface.heights_m(30, 20) = 20;
   compare_with_brute_force(surface, 0);
 }
 
-TEST(HeightWalk, FindsWhatIsManyTilesAway) {
+TEST(HeightFieldRayCaster, FindsWhatIsManyTilesAway) {
   // A comb of walls 16 texels apart; the ray falls from 14 to 10, their height, over 300 tiles.
   Grid<float> heights(16, 1);
   heights(8, 0) = 1;
   const Surface surface = make_surface(heights, 16, 10, Edge::kWrap);  // texel 1 m, walls 10 m
-  const HeightWalk walk(surface);
+  const HeightFieldRayCaster walk(surface);
   SurfacePoint hit;
   const double run = 16 * 300.0;
-  ASSERT_EQ(walk.follow({0.5, 0.25, 14}, glm::normalize(glm::dvec3(run, 0, -4)), hit), WalkEnd::kHit);
+  ASSERT_EQ(walk.follow({0.5, 0.25, 14}, glm::normalize(glm::dvec3(run, 0, -4)), hit), RayOutcome::kHit);
   EXPECT_NEAR(hit.position.x, 8, 1.0);
   EXPECT_NEAR(hit.position.z, 10, 0.1);
   EXPECT_EQ(hit.position.y, 0.25);
 }
 
-TEST(HeightWalk, VerticalAndHorizontalRaysEnd) {
+TEST(HeightFieldRayCaster, VerticalAndHorizontalRaysEnd) {
   const Surface surface = random_surface(9, 7, 3, Edge::kWrap, 4);
-  const HeightWalk walk(surface);
+  const HeightFieldRayCaster walk(surface);
   SurfacePoint hit;
-  EXPECT_EQ(walk.follow({2, 3, 5}, {0, 0, 1}, hit), WalkEnd::kSky);
-  EXPECT_EQ(walk.follow({2.25, 3.5, 5}, {0, 0, -1}, hit), WalkEnd::kHit);
+  EXPECT_EQ(walk.follow({2, 3, 5}, {0, 0, 1}, hit), RayOutcome::kEscaped);
+  EXPECT_EQ(walk.follow({2.25, 3.5, 5}, {0, 0, -1}, hit), RayOutcome::kHit);
   EXPECT_EQ(hit.position.x, 2.25);
   EXPECT_EQ(hit.position.y, 3.5);
-  EXPECT_EQ(walk.follow({2, 3, 5}, {1, 0, 0}, hit), WalkEnd::kSky);
+  EXPECT_EQ(walk.follow({2, 3, 5}, {1, 0, 0}, hit), RayOutcome::kEscaped);
   // On the far edge of the map, along it.
-  EXPECT_EQ(walk.follow({9, 3.5, 2.9}, glm::normalize(glm::dvec3(0, 1, 0.1)), hit), WalkEnd::kSky);
-  EXPECT_EQ(walk.follow({9, 7, 5}, {0, 0, -1}, hit), WalkEnd::kHit);
+  EXPECT_EQ(walk.follow({9, 3.5, 2.9}, glm::normalize(glm::dvec3(0, 1, 0.1)), hit), RayOutcome::kEscaped);
+  EXPECT_EQ(walk.follow({9, 7, 5}, {0, 0, -1}, hit), RayOutcome::kHit);
 }
 
-TEST(HeightWalk, HorizontalRayInAnEndlessTrenchIsLost) {
+TEST(HeightFieldRayCaster, HorizontalRayInAnEndlessTrenchIsLost) {
   Grid<float> heights(4, 4);
   for (int y = 0; y < 4; ++y) heights(0, y) = 1;
   const Surface surface = make_surface(heights, 4, 1, Edge::kWrap);
   SurfacePoint hit;
-  EXPECT_EQ(HeightWalk(surface).follow({2, 0, 0.5}, {0, 1, 0}, hit), WalkEnd::kLost);
+  EXPECT_EQ(HeightFieldRayCaster(surface).follow({2, 0, 0.5}, {0, 1, 0}, hit), RayOutcome::kTruncated);
 }
 
-TEST(HeightWalk, OneTexelIsAPlane) {
+TEST(HeightFieldRayCaster, OneTexelIsAPlane) {
   const Surface surface = make_surface(Grid<float>(1, 1, 0.5f), 1, 1, Edge::kWrap);
   SurfacePoint hit;
-  EXPECT_EQ(HeightWalk(surface).follow({0, 0, 0}, glm::normalize(glm::dvec3(1, 0, 1e-9)), hit),
-            WalkEnd::kSky);
-  ASSERT_EQ(HeightWalk(surface).follow({0, 0, 0.5}, glm::normalize(glm::dvec3(1, 1, -0.1)), hit),
-            WalkEnd::kHit);
+  EXPECT_EQ(HeightFieldRayCaster(surface).follow({0, 0, 0}, glm::normalize(glm::dvec3(1, 0, 1e-9)), hit),
+            RayOutcome::kEscaped);
+  ASSERT_EQ(HeightFieldRayCaster(surface).follow({0, 0, 0.5}, glm::normalize(glm::dvec3(1, 1, -0.1)), hit),
+            RayOutcome::kHit);
   EXPECT_NEAR(hit.position.z, 0, 1e-12);
   EXPECT_EQ(hit.normal, glm::dvec3(0, 0, 1));
 }

@@ -19,8 +19,8 @@ TEST(LowDiscrepancy, RadicalInverseMirrorsDigits) {
 }
 
 TEST(LowDiscrepancy, ShiftStaysInTheUnitInterval) {
-  EXPECT_DOUBLE_EQ(shift_modulo_one(0.75, 0.5), 0.25);
-  EXPECT_DOUBLE_EQ(shift_modulo_one(0.5, 0.5), 0);
+  EXPECT_DOUBLE_EQ(cranley_patterson_rotate(0.75, 0.5), 0.25);
+  EXPECT_DOUBLE_EQ(cranley_patterson_rotate(0.5, 0.5), 0);
 }
 
 TEST(LowDiscrepancy, HashSeparatesSeedsStreamsAndIndices) {

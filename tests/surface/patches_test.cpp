@@ -24,17 +24,17 @@ Surface half_rough_surface(Edge edge) {
   return surface;
 }
 
-TEST(Patches, TexelsAreTheirOwn) {
+TEST(PatchKind, TexelsAreTheirOwn) {
   const Surface surface = white_noise_surface(7, 5, 0.1);
-  const PatchSet patches = make_patches(surface, Patches::kTexels);
+  const PatchSet patches = make_patches(surface, PatchKind::kTexels);
   EXPECT_EQ(patches.count, 35u);
   EXPECT_EQ(patch_position_texels(surface, patches, 16), glm::dvec2(2, 2));
 }
 
-TEST(Patches, EveryNodeOfEveryFacetOnce) {
+TEST(PatchKind, EveryNodeOfEveryFacetOnce) {
   for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
     const Surface surface = half_rough_surface(edge);
-    const PatchSet patches = make_patches(surface, Patches::kFacets);
+    const PatchSet patches = make_patches(surface, PatchKind::kFacets);
     std::map<uint32_t, uint32_t> nodes_of;  // bits
     for (uint32_t patch = 0; patch < patches.count; ++patch) {
       const FacetNode node = facet_node(patches, patch);
@@ -46,7 +46,7 @@ TEST(Patches, EveryNodeOfEveryFacetOnce) {
       // Its own light is all it draws.
       const glm::dvec2 uv = node_uv(node.node);
       for (const double choice : {0.0, 0.5, 0.999999})
-        EXPECT_EQ(draw_patch(patches, node.facet, uv, choice), patch);
+        EXPECT_EQ(sample_patch(patches, node.facet, uv, choice), patch);
     }
     EXPECT_EQ(nodes_of.size(), facet_count(surface));
     for (const auto& [facet, nodes] : nodes_of) {
@@ -59,9 +59,9 @@ TEST(Patches, EveryNodeOfEveryFacetOnce) {
   }
 }
 
-TEST(Patches, ATileIsOnePieceOfMemory) {
+TEST(PatchKind, ATileIsOnePieceOfMemory) {
   const Surface surface = half_rough_surface(Edge::kOpen);
-  const PatchSet patches = make_patches(surface, Patches::kFacets);
+  const PatchSet patches = make_patches(surface, PatchKind::kFacets);
   uint32_t run = 0;
   for (const uint32_t first_row : {0u, 16u})
     for (const uint32_t column : {0u, 16u, 32u})
@@ -74,9 +74,9 @@ TEST(Patches, ATileIsOnePieceOfMemory) {
 
 // Light that is linear on a facet comes back exactly in the mean over the choices, wherever it is asked for;
 // also beyond the facet's border by rounding.
-TEST(Patches, DrawsReproduceLinearLight) {
+TEST(PatchKind, DrawsReproduceLinearLight) {
   const Surface surface = half_rough_surface(Edge::kWrap);
-  const PatchSet patches = make_patches(surface, Patches::kFacets);
+  const PatchSet patches = make_patches(surface, PatchKind::kFacets);
   constexpr int kChoices = 3000;
   for (const uint32_t facet : {0u, 1u, 35u, 60u, 61u}) {
     for (const glm::dvec2 uv : {glm::dvec2(0.1, 0.2),
@@ -92,7 +92,7 @@ TEST(Patches, DrawsReproduceLinearLight) {
                                 {0.7, 0.3000001}}) {
       glm::dvec2 mean(0);
       for (int i = 0; i < kChoices; ++i) {
-        const FacetNode node = facet_node(patches, draw_patch(patches, facet, uv, (i + 0.5) / kChoices));
+        const FacetNode node = facet_node(patches, sample_patch(patches, facet, uv, (i + 0.5) / kChoices));
         EXPECT_EQ(node.facet, facet);
         mean += node_uv(node.node) / static_cast<double>(kChoices);
       }
@@ -105,7 +105,7 @@ TEST(Patches, DrawsReproduceLinearLight) {
 
 // ∫ over the unit triangle, over its area: 1, 1/3 for u and v, 1/6 for u², 1/12 for uv. Of the quadratics the
 // linear part of the rule is wrong: on triangles of side s = 1/k the mean of u² by s²/6, of uv by −s²/12.
-TEST(Patches, AreaShares) {
+TEST(PatchKind, AreaShares) {
   for (const int k : {kCoarseSubdivision, kFineSubdivision}) {
     const double linear = k == kCoarseSubdivision ? 0 : 0.75;
     double one = 0, u = 0, v = 0, uu = 0, uv = 0;
@@ -127,9 +127,9 @@ TEST(Patches, AreaShares) {
   }
 }
 
-TEST(Patches, AreasAddUpToTheSurface) {
+TEST(PatchKind, AreasAddUpToTheSurface) {
   const Surface surface = half_rough_surface(Edge::kWrap);
-  const PatchSet patches = make_patches(surface, Patches::kFacets);
+  const PatchSet patches = make_patches(surface, PatchKind::kFacets);
   double facets = 0, nodes = 0;
   for (uint32_t facet = 0; facet < facet_count(surface); ++facet)
     facets += facet_area_ratio(surface, facet) / 2;
@@ -138,7 +138,7 @@ TEST(Patches, AreasAddUpToTheSurface) {
   EXPECT_NEAR(nodes / facets, 1, 1e-12);
 }
 
-TEST(Patches, StartsLieOnTheFacetNearTheNode) {
+TEST(PatchKind, StartsLieOnTheFacetNearTheNode) {
   for (const int k : {kCoarseSubdivision, kFineSubdivision})
     for (uint32_t node = 0; node < node_count(k); ++node)
       for (const glm::dvec2 point : {glm::dvec2(0.3, 0.3), {0.01, 0.9}, {0.9, 0.05}}) {
@@ -149,7 +149,7 @@ TEST(Patches, StartsLieOnTheFacetNearTheNode) {
 }
 
 // Position and coordinates are each other's inverse on every copy of the map.
-TEST(Patches, FacetCoordinatesFindThePointAgain) {
+TEST(PatchKind, FacetCoordinatesFindThePointAgain) {
   const Surface surface = white_noise_surface(6, 4, 0.3);
   for (uint32_t facet = 0; facet < facet_count(surface); ++facet)
     for (const glm::dvec2 uv : {glm::dvec2(0.2, 0.3), {0.98, 0.01}, {0, 0}, {0.01, 0.98}})

@@ -7,9 +7,9 @@
 namespace hemibake {
 namespace {
 
-double sum_of(const std::vector<Link>& links) {
+double sum_of(const std::vector<FormFactor>& links) {
   double sum = 0;
-  for (const Link& link : links) sum += static_cast<double>(link.weight);
+  for (const FormFactor& link : links) sum += static_cast<double>(link.weight);
   return sum;
 }
 
@@ -43,11 +43,11 @@ TEST(LinkMerge, OpenGroundIsExactlyOne) {
 
 TEST(LinkMerge, BilinearLinksMeetTheHitOnAverage) {
   const Surface surface = synthetic_surface(SyntheticKind::kFlat, 8, 4);
-  std::vector<Link> links;
+  std::vector<FormFactor> links;
   add_bilinear_links(surface, {2.25, 1.5}, 1, links);
   ASSERT_EQ(links.size(), 4u);
   double x = 0, y = 0;
-  for (const Link& link : links) {
+  for (const FormFactor& link : links) {
     x += static_cast<double>(link.weight) * (link.patch % 8);
     y += static_cast<double>(link.weight) * (link.patch / 8);
   }
@@ -57,7 +57,7 @@ TEST(LinkMerge, BilinearLinksMeetTheHitOnAverage) {
 
 TEST(LinkMerge, PositionsWrapOrClampAtTheBorder) {
   const Surface wrapped = synthetic_surface(SyntheticKind::kFlat, 8, 4);
-  std::vector<Link> links;
+  std::vector<FormFactor> links;
   add_nearest_link(wrapped, {7.6, -0.6}, 1, links);
   ASSERT_EQ(links.size(), 1u);
   EXPECT_EQ(links[0].patch, 3u * 8 + 0);

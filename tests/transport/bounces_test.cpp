@@ -15,13 +15,14 @@ namespace hemibake {
 namespace {
 
 // Two texels that see each other: E₀/π = c, the rest goes to the other.
-Visibility two_texels(float c) {
-  Visibility seen;
+LightTransport two_texels(float c) {
+  LightTransport seen;
   seen.visible_fraction = Grid<float>(2, 1, c);
   seen.direct_over_pi = Grid<float>(2, 1, c);
-  seen.gather = make_links(2, 2);
-  for (uint32_t i = 0; i < 2; ++i) append_row(seen.gather.blocks[0], std::vector<Link>{{1 - i, 1 - c}});
-  finish_blocks(seen.gather);
+  seen.final_gather = make_form_factors(2, 2);
+  for (uint32_t i = 0; i < 2; ++i)
+    append_row(seen.final_gather.blocks[0], std::vector<FormFactor>{{1 - i, 1 - c}});
+  finish_blocks(seen.final_gather);
   return seen;
 }
 
@@ -43,23 +44,23 @@ TEST(Bounces, ConvergenceGoesOnUntilTheToleranceAndNoFurther) {
   for (const float residual : bounces.residual.values) EXPECT_LT(std::abs(residual), 1e-6f);
   EXPECT_LE(bounces.bounces_made,
             3 + 4);  // two texels that are alike have one way to go; plain bounces take 48
-  EXPECT_TRUE(bounces.texels_short.empty());
+  EXPECT_TRUE(bounces.unconverged_texels.empty());
 }
 
 TEST(Bounces, TheCapEndsItAndNamesWhatIsShort) {
-  Visibility seen = two_texels(0.25f);
+  LightTransport seen = two_texels(0.25f);
   seen.direct_over_pi[1] = 0;
-  seen.gather = make_links(2, 2);
-  append_row(seen.gather.blocks[0], std::vector<Link>{{1, 0.75f}});
-  append_row(seen.gather.blocks[0], std::vector<Link>{{1, 1.0f}});  // sees only itself
-  finish_blocks(seen.gather);
+  seen.final_gather = make_form_factors(2, 2);
+  append_row(seen.final_gather.blocks[0], std::vector<FormFactor>{{1, 0.75f}});
+  append_row(seen.final_gather.blocks[0], std::vector<FormFactor>{{1, 1.0f}});  // sees only itself
+  finish_blocks(seen.final_gather);
   BounceOptions options;
   options.converge_tolerance = 1e-6;
   options.max_bounces = 50;
   const Bounces bounces = bounce_light(seen, options);
   EXPECT_LE(bounces.bounces_made, 50);
-  EXPECT_EQ(bounces.texels_short, (std::vector<uint32_t>{0, 1}));
-  EXPECT_EQ(bounces.texels_closed, (std::vector<uint32_t>{1}));
+  EXPECT_EQ(bounces.unconverged_texels, (std::vector<uint32_t>{0, 1}));
+  EXPECT_EQ(bounces.enclosed_texels, (std::vector<uint32_t>{1}));
   EXPECT_NEAR(bounces.residual[1], 1, 1e-6);
 }
 
@@ -72,13 +73,12 @@ TEST(Bounces, NoBouncesLeavesTheDirectLight) {
   EXPECT_NEAR(bounces.residual[0], 0.75, 1e-6);
 }
 
-Visibility see(const Surface& surface, Patches patches, int rays, uint64_t seed = 0) {
+LightTransport see(const Surface& surface, PatchKind patches, int rays, uint64_t seed = 0) {
   RayOptions options;
   options.seed = seed;
   options.rays = rays;
-  options.patches = patches;
-  return trace_surface(*make_embree_tracer(surface, options), surface.width(), surface.height(), patches,
-                       true);
+  options.patch_kind = patches;
+  return trace_surface(*make_embree_tracer(surface, options), true);
 }
 
 // At albedo 1 all light comes back out: π in every texel, whatever the map.
@@ -89,13 +89,13 @@ TEST(Bounces, EnergyIsPiInEveryTexel) {
       synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.2), white_noise_surface(48, 48, 0.05),
       synthetic_surface(SyntheticKind::kGroove, 32, 16), synthetic_surface(SyntheticKind::kFlat, 8, 8)};
   for (const Surface& surface : maps) {
-    const Bounces bounces = bounce_light(see(surface, Patches::kFacets, 256), options);
-    EXPECT_TRUE(bounces.texels_short.empty());
+    const Bounces bounces = bounce_light(see(surface, PatchKind::kFacets, 256), options);
+    EXPECT_TRUE(bounces.unconverged_texels.empty());
     for (const float total : bounces.total.values) ASSERT_NEAR(static_cast<double>(total) / kPi, 1, 2e-5);
   }
   for (const SyntheticKind kind : {SyntheticKind::kGroove, SyntheticKind::kFlat}) {
     const Bounces bounces =
-        bounce_light(see(synthetic_surface(kind, 32, 16), Patches::kTexels, 256), options);
+        bounce_light(see(synthetic_surface(kind, 32, 16), PatchKind::kTexels, 256), options);
     for (const float total : bounces.total.values) ASSERT_NEAR(static_cast<double>(total) / kPi, 1, 2e-5);
   }
 }
@@ -106,7 +106,7 @@ double mean_product(const Surface& surface, const PatchSet& patches, const std::
                     const std::vector<double>& g) {
   double sum = 0, area_sum = 0;
   for (uint32_t facet = 0; facet < facet_count(surface); ++facet) {
-    const int k = facet_node(patches, draw_patch(patches, facet, {0, 0}, 0)).subdivision;
+    const int k = facet_node(patches, sample_patch(patches, facet, {0, 0}, 0)).subdivision;
     const double area = facet_area_ratio(surface, facet);
     area_sum += area;
     for (int b = 0; b <= 2 * k; ++b)
@@ -114,8 +114,8 @@ double mean_product(const Surface& surface, const PatchSet& patches, const std::
         if (a % 2 == 0 && b % 2 == 0) continue;  // a node
         const bool on_border = a == 0 || b == 0 || a + b == 2 * k;
         const glm::dvec2 middle = glm::dvec2(a, b) / (2.0 * k);
-        const uint32_t one = draw_patch(patches, facet, middle, 0.25),
-                       other = draw_patch(patches, facet, middle, 0.75);
+        const uint32_t one = sample_patch(patches, facet, middle, 0.25),
+                       other = sample_patch(patches, facet, middle, 0.75);
         sum += area * (on_border ? 1 : 2) / (3.0 * k * k) * (f[one] + f[other]) / 2 * (g[one] + g[other]) / 2;
       }
   }
@@ -127,16 +127,17 @@ double mean_product(const Surface& surface, const PatchSet& patches, const std::
 // bounce on this map, whose slopes turn by as much as 10° from texel to texel).
 TEST(Bounces, LightThatStaysIsLightThatComesBack) {
   const Surface surface = synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.2);
-  const Visibility seen = see(surface, Patches::kFacets, 256);
+  const LightTransport seen = see(surface, PatchKind::kFacets, 256);
   // Of other rays, so that the noise of a node is not multiplied by itself.
-  const Visibility again = see(surface, Patches::kFacets, 256, 1);
-  const PatchSet patches = make_patches(surface, Patches::kFacets);
+  const LightTransport again = see(surface, PatchKind::kFacets, 256, 1);
+  const PatchSet patches = make_patches(surface, PatchKind::kFacets);
   std::vector<double> light(seen.patch_direct_over_pi.begin(), seen.patch_direct_over_pi.end()),
       next(light.size());
   std::vector<double> ones(light.size(), 1), blocked(light.size());
-  for (size_t i = 0; i < light.size(); ++i) blocked[i] = 1 - static_cast<double>(again.patch_direct_over_pi[i]);
+  for (size_t i = 0; i < light.size(); ++i)
+    blocked[i] = 1 - static_cast<double>(again.patch_direct_over_pi[i]);
   for (int bounce = 0; bounce < 4; ++bounce) {
-    gather(seen.patches, light, next);
+    multiply(seen.patch_form_factors, light, next);
     EXPECT_NEAR(mean_product(surface, patches, next, ones) / mean_product(surface, patches, light, blocked),
                 1, 1e-2);
     light = next;
@@ -147,7 +148,7 @@ TEST(Bounces, SameBytesAtAnyThreadCount) {
   const Surface surface = white_noise_surface(80, 64, 0.1);
   const auto run = [&](int threads) {
     set_thread_count(threads);
-    const Visibility seen = see(surface, Patches::kFacets, 64);
+    const LightTransport seen = see(surface, PatchKind::kFacets, 64);
     return bounce_light(seen, {});
   };
   const Bounces one = run(1), two = run(2);

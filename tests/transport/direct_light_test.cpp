@@ -10,7 +10,7 @@ namespace {
 
 TEST(DirectLight, IsBounceLightOfNoBounces) {
   const Surface surface = white_noise_surface(33, 17, 0.2);
-  const Visibility seen = trace_surface(*make_slice_tracer(surface, {}), 33, 17, Patches::kFacets, false);
+  const LightTransport seen = trace_surface(*make_slice_tracer(surface, {}), false);
   BounceOptions options;
   options.bounces = 0;
   const Bounces expected = bounce_light(seen, options), actual = direct_light(seen);

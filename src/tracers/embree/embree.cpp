@@ -26,7 +26,8 @@ class EmbreeTracer final : public Tracer {
  public:
   EmbreeTracer(const Surface& surface, const RayOptions& options);
 
-  const PatchSet& patches() const override { return patches_; }
+  const Surface& surface() const override { return surface_; }
+  const PatchSet& patch_set() const override { return patches_; }
   void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const override;
   void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const override;
   std::unique_ptr<Tracer> reseeded(uint64_t seed) const override {
@@ -56,7 +57,7 @@ class EmbreeTracer final : public Tracer {
   void trace_rays(std::span<const WeightedDirection> rays, const FloatFrame& frame, const StartOf& start_of,
                   uint32_t own_facet, double choice, bool with_links, Row& row, TracerCounts& counts) const;
   void add_links(const SurfaceHit& hit, double weight, double choice, bool of_node,
-                 std::vector<Link>& links) const;
+                 std::vector<FormFactor>& links) const;
   void trace_node(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const;
   glm::dvec2 hit_position_texels(const SurfaceHit& hit) const;
 
@@ -72,7 +73,7 @@ class EmbreeTracer final : public Tracer {
 EmbreeTracer::EmbreeTracer(const Surface& surface, const RayOptions& options)
     : surface_(surface),
       options_(options),
-      patches_(make_patches(surface, options.patches)),
+      patches_(make_patches(surface, options.patch_kind)),
       texel_directions_(make_directions(options.directions, options.rays, options.cone_degrees)),
       scene_(std::make_shared<EmbreeScene>(surface, options.max_distance_m)) {
   const double range = height_range_m(surface) / surface.texel_size_m;
@@ -112,8 +113,8 @@ EmbreeTracer::FloatFrame EmbreeTracer::texel_frame(uint32_t texel) const {
 
 // Nodes alone can meet only each other for ever (add_node_links): a texel draws one node however near it is.
 void EmbreeTracer::add_links(const SurfaceHit& hit, double weight, double choice, bool of_node,
-                             std::vector<Link>& links) const {
-  if (options_.patches == Patches::kFacets) {
+                             std::vector<FormFactor>& links) const {
+  if (options_.patch_kind == PatchKind::kFacets) {
     const double distance = of_node ? hit.distance_texels : std::numeric_limits<double>::infinity();
     add_node_links(patches_, hit.facet, {hit.u, hit.v}, distance, choice, weight, links);
   } else if (options_.texel_links == TexelLinks::kNearest) {
@@ -135,16 +136,16 @@ void EmbreeTracer::trace_rays(std::span<const WeightedDirection> rays, const Flo
   SurfaceHit hit;
   for (size_t i = 0; i < rays.size(); ++i) {
     const glm::vec3 direction = frame.world_from_tangent(rays[i].local);
-    const Fate fate = scene_->follow(start_of(i), direction, own_facet, with_links ? &hit : nullptr);
-    if (fate == Fate::kHit) {
+    const RayOutcome fate = scene_->follow(start_of(i), direction, own_facet, with_links ? &hit : nullptr);
+    if (fate == RayOutcome::kHit) {
       ++hits;
-      choice = shift_modulo_one(choice, kGoldenStep);
+      choice = cranley_patterson_rotate(choice, kGoldenStep);
       if (with_links) add_links(hit, rays[i].cosine_weight, choice, own_facet != kNoFacet, row.links);
     } else {
       visible += rays[i].uniform_weight;
       direct += rays[i].cosine_weight;
       bent += rays[i].uniform_weight * glm::dvec3(direction);
-      counts.cut_short += fate == Fate::kCutShort;
+      counts.truncated += fate == RayOutcome::kTruncated;
     }
   }
   counts.rays += rays.size();
@@ -166,7 +167,7 @@ void EmbreeTracer::trace_texel(uint32_t texel, bool with_links, Row& row, Tracer
 }
 
 void EmbreeTracer::trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const {
-  if (options_.patches == Patches::kTexels) return trace_texel(patch, with_links, row, counts);
+  if (options_.patch_kind == PatchKind::kTexels) return trace_texel(patch, with_links, row, counts);
   trace_node(patch, with_links, row, counts);
 }
 
@@ -180,8 +181,8 @@ void EmbreeTracer::trace_node(uint32_t patch, bool with_links, Row& row, TracerC
   const double slope_x = leg * (corners[1].z - corners[0].z), slope_y = leg * (corners[2].z - corners[0].z);
   const double shift_u = random(kNodeShiftU), shift_v = random(kNodeShiftV);
   const auto start_of = [&](size_t i) {
-    const glm::dvec2 point = sample_uniform_triangle(
-        {shift_modulo_one(set.points[i].x, shift_u), shift_modulo_one(set.points[i].y, shift_v)});
+    const glm::dvec2 point = sample_uniform_triangle({cranley_patterson_rotate(set.points[i].x, shift_u),
+                                                      cranley_patterson_rotate(set.points[i].y, shift_v)});
     const glm::dvec2 uv = node_start_uv(node.node, point);
     // The height is taken at the rounded position: on a steep wall that rounding is more than the lift.
     const float x = static_cast<float>(corners[0].x + leg * uv.x),
@@ -214,7 +215,7 @@ std::vector<RayRecord> EmbreeTracer::replay_texel(uint32_t texel) const {
     const glm::vec3 direction = frame.world_from_tangent(ray.local);
     SurfaceHit hit;
     RayRecord record{glm::dvec3(direction), ray.cosine_weight, ray.uniform_weight, false, 0, {0, 0}, 0, 0};
-    if (scene_->follow(start, direction, kNoFacet, &hit) == Fate::kHit) {
+    if (scene_->follow(start, direction, kNoFacet, &hit) == RayOutcome::kHit) {
       record.hit = true;
       record.facet = hit.facet;
       record.hit_texel = hit_position_texels(hit);

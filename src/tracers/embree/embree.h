@@ -3,7 +3,7 @@
 // A wrapping map is followed tile by tile for any distance: the scene holds one tile (small maps repeated up
 // to 64 texels) and a margin, and a ray that leaves it goes on in the next copy. A ray below the highest
 // texel is followed for a horizontal distance of 10⁵ height ranges (at most 10⁶ tiles), then it counts as sky
-// and in TracerCounts::cut_short. Only rays within 10⁻⁵ rad of the horizon can get that far below the top, so
+// and in TracerCounts::truncated. Only rays within 10⁻⁵ rad of the horizon can get that far below the top, so
 // α and E₀/π are off by at most 10⁻⁵; with more than 10 tile lengths of height range the bound is range /
 // (10⁶ tiles). Open edges: what leaves the map's rectangle meets nothing.
 //

@@ -105,8 +105,8 @@ uint32_t EmbreeScene::facet_of_primitive(uint32_t primitive) const {
 
 // Traces one straight piece inside the scene; on a hit of the ray's own facet (rounding on a steep wall) it
 // goes on behind it: a flat facet never sees itself.
-Fate EmbreeScene::follow_segment(const glm::vec3& start, const glm::vec3& direction, float length,
-                                 uint32_t own_facet, SurfaceHit* hit) const {
+RayOutcome EmbreeScene::follow_segment(const glm::vec3& start, const glm::vec3& direction, float length,
+                                       uint32_t own_facet, SurfaceHit* hit) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query;
@@ -125,21 +125,21 @@ Fate EmbreeScene::follow_segment(const glm::vec3& start, const glm::vec3& direct
   ray.flags = 0;
   if (hit == nullptr) {
     rtcOccluded1(scene_, &context, &ray);
-    return ray.tfar < 0 ? Fate::kHit : Fate::kSky;
+    return ray.tfar < 0 ? RayOutcome::kHit : RayOutcome::kEscaped;
   }
   for (;;) {
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene_, &context, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Fate::kSky;
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return RayOutcome::kEscaped;
     const uint32_t facet = facet_of_primitive(query.hit.primID);
     if (facet != own_facet) {
       *hit = {facet, query.hit.u, query.hit.v, static_cast<double>(ray.tfar), 0};
-      return Fate::kHit;
+      return RayOutcome::kHit;
     }
     ray.tnear = std::max(std::nextafter(ray.tfar, length), ray.tfar * 1.00001f);
     ray.tfar = length;
-    if (ray.tnear >= length) return Fate::kSky;
+    if (ray.tnear >= length) return RayOutcome::kEscaped;
   }
 }
 
@@ -153,25 +153,25 @@ float EmbreeScene::length_in_block(float x, float y, const glm::vec3& direction)
   return std::min((edge_x - x) / direction.x, (edge_y - y) / direction.y);
 }
 
-Fate EmbreeScene::follow(const glm::vec3& start, const glm::vec3& direction, uint32_t own_facet,
-                         SurfaceHit* hit) const {
+RayOutcome EmbreeScene::follow(const glm::vec3& start, const glm::vec3& direction, uint32_t own_facet,
+                               SurfaceHit* hit) const {
   // Where the ray has left the slab of the relief. Rounded up: the highest texel itself can still be met.
   float end = max_distance_texels_;
   if (direction.z > 0) {
     const float climb = top_texels_ - start.z;
-    if (climb <= 0) return Fate::kSky;
+    if (climb <= 0) return RayOutcome::kEscaped;
     end = std::min(end, climb / direction.z * 1.0001f);
   }
   const float first_length = wrap_ ? std::min(end, length_in_block(start.x, start.y, direction)) : end;
-  const Fate fate = follow_segment(start, direction, first_length, own_facet, hit);
-  if (fate == Fate::kHit || first_length == end) return fate;
+  const RayOutcome fate = follow_segment(start, direction, first_length, own_facet, hit);
+  if (fate == RayOutcome::kHit || first_length == end) return fate;
   return follow_beyond(start, direction, first_length, end, own_facet, hit);
 }
 
 // Goes on through the following copies of the map. Positions come from the start in double, so that nothing
 // drifts.
-Fate EmbreeScene::follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length,
-                                double end, uint32_t own_facet, SurfaceHit* hit) const {
+RayOutcome EmbreeScene::follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length,
+                                      double end, uint32_t own_facet, SurfaceHit* hit) const {
   const double horizontal = std::hypot(direction.x, direction.y);
   const double cut = cut_distance_texels_ / horizontal;
   // Each piece begins a little before the last one ended: rounding of its start opens no gap.
@@ -188,15 +188,15 @@ Fate EmbreeScene::follow_beyond(const glm::vec3& start, const glm::vec3& directi
     const double length = length_in_block(piece_start.x, piece_start.y, direction);
     travelled = begin + length;
     const float piece_length = static_cast<float>(std::min(length, stop - begin));
-    if (follow_segment(piece_start, direction, piece_length, own_facet, hit) == Fate::kHit) {
+    if (follow_segment(piece_start, direction, piece_length, own_facet, hit) == RayOutcome::kHit) {
       if (hit != nullptr) {
         hit->distance_texels += begin;
         hit->tiles_crossed = tiles;
       }
-      return Fate::kHit;
+      return RayOutcome::kHit;
     }
   }
-  return end <= cut ? Fate::kSky : Fate::kCutShort;
+  return end <= cut ? RayOutcome::kEscaped : RayOutcome::kTruncated;
 }
 
 }  // namespace hemibake

@@ -8,11 +8,10 @@
 #include <glm/vec3.hpp>
 
 #include "surface/facets.h"
+#include "surface/ray_outcome.h"
 #include "surface/surface.h"
 
 namespace hemibake {
-
-enum class Fate { kSky, kHit, kCutShort };
 
 struct SurfaceHit {
   uint32_t facet = kNoFacet;
@@ -31,14 +30,15 @@ class EmbreeScene {
 
   // direction: unit. own_facet: the ray does not meet it; kNoFacet: it starts on none. hit: null where only
   // the fate is asked for.
-  Fate follow(const glm::vec3& start, const glm::vec3& direction, uint32_t own_facet, SurfaceHit* hit) const;
+  RayOutcome follow(const glm::vec3& start, const glm::vec3& direction, uint32_t own_facet,
+                    SurfaceHit* hit) const;
 
  private:
   void build();
-  Fate follow_segment(const glm::vec3& start, const glm::vec3& direction, float length, uint32_t own_facet,
-                      SurfaceHit* hit) const;
-  Fate follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length, double end,
-                     uint32_t own_facet, SurfaceHit* hit) const;
+  RayOutcome follow_segment(const glm::vec3& start, const glm::vec3& direction, float length,
+                            uint32_t own_facet, SurfaceHit* hit) const;
+  RayOutcome follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length,
+                           double end, uint32_t own_facet, SurfaceHit* hit) const;
   float length_in_block(float x, float y, const glm::vec3& direction) const;
   uint32_t facet_of_primitive(uint32_t primitive) const;
 

@@ -11,14 +11,13 @@
 #include "sampling/directions.h"
 #include "sampling/low_discrepancy.h"
 #include "surface/frame.h"
+#include "surface/ray_outcome.h"
 #include "tracers/link_merge.h"
 
 namespace hemibake {
 namespace {
 
 constexpr uint64_t kTexelRotation = 1;  // hash stream
-
-enum class Fate { kSky, kHit, kOutOfSteps };
 
 // Without cosine weights.
 std::vector<WeightedDirection> published_rays(int count, double cone_degrees) {
@@ -54,7 +53,8 @@ class MarchTracer final : public Tracer {
  public:
   MarchTracer(const Surface& surface, MarchOptions options);
 
-  const PatchSet& patches() const override { return patches_; }
+  const Surface& surface() const override { return surface_; }
+  const PatchSet& patch_set() const override { return patches_; }
   void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const override;
   void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const override {
     trace_texel(patch, with_links, row, counts);
@@ -71,7 +71,7 @@ class MarchTracer final : public Tracer {
   glm::dvec3 texel_start(uint32_t texel) const;
   Frame texel_frame(uint32_t texel) const;
   double height_at(double x, double y) const;
-  Fate march(const glm::dvec3& start, const glm::dvec3& direction, double* distance) const;
+  RayOutcome march(const glm::dvec3& start, const glm::dvec3& direction, double* distance) const;
   glm::dvec2 link_position(const glm::dvec3& start, const glm::dvec3& direction, double distance) const;
   uint32_t facet_at(const glm::dvec2& position) const;
 
@@ -87,7 +87,7 @@ class MarchTracer final : public Tracer {
 
 MarchTracer::MarchTracer(const Surface& surface, MarchOptions options)
     : surface_(surface),
-      patches_(make_patches(surface, Patches::kTexels)),
+      patches_(make_patches(surface, PatchKind::kTexels)),
       options_(std::move(options)),
       wrap_(surface.edge == Edge::kWrap),
       round_weights_(options_.lookup == MarchLookup::kPublished),
@@ -147,7 +147,7 @@ double MarchTracer::height_at(double x, double y) const {
 }
 
 // distance: where hit, in units of |direction| = 1 along the ray, whatever the length of `direction`.
-Fate MarchTracer::march(const glm::dvec3& start, const glm::dvec3& direction, double* distance) const {
+RayOutcome MarchTracer::march(const glm::dvec3& start, const glm::dvec3& direction, double* distance) const {
   const double horizontal = 1 - direction.z * direction.z;
   const glm::dvec3 step = direction * (horizontal > 0 ? 1 / std::sqrt(horizontal) : 1.0);
   const double width = surface_.width(), height = surface_.height();
@@ -157,25 +157,25 @@ Fate MarchTracer::march(const glm::dvec3& start, const glm::dvec3& direction, do
   double x = start.x, y = start.y, z = start.z, height_before = start.z;
   for (int i = 1; i <= options_.max_steps; ++i) {
     z += step.z;
-    if (z >= sky_) return Fate::kSky;
+    if (z >= sky_) return RayOutcome::kEscaped;
     x += step_x;
     y += step_y;
     if (wrap_) {
       x = x < -0.5 ? x + width : x >= width - 0.5 ? x - width : x;
       y = y < -0.5 ? y + height : y >= height - 0.5 ? y - height : y;
     } else if (x < -0.5 || y < -0.5 || x >= width - 0.5 || y >= height - 0.5) {
-      return Fate::kSky;
+      return RayOutcome::kEscaped;
     }
     const double here = height_at(x, y);
     if (z < here) {
       const double back = (here - z) / (2 * z - step.z + here - height_before);
       const double fraction = back > 0 ? std::min(back, 1.0) : 0.0;
       *distance = (i - fraction) * glm::length(step);
-      return *distance > max_distance_ ? Fate::kSky : Fate::kHit;
+      return *distance > max_distance_ ? RayOutcome::kEscaped : RayOutcome::kHit;
     }
     height_before = here;
   }
-  return Fate::kOutOfSteps;
+  return RayOutcome::kTruncated;
 }
 
 // Inside the map.
@@ -212,15 +212,15 @@ void MarchTracer::trace_texel(uint32_t texel, bool with_links, Row& row, TracerC
   for (const WeightedDirection& ray : rays_) {
     const glm::dvec3 direction = frame.world_from_tangent(glm::dvec3(ray.local));
     double distance = 0;
-    const Fate fate = march(start, direction, &distance);
-    if (fate == Fate::kHit) {
+    const RayOutcome fate = march(start, direction, &distance);
+    if (fate == RayOutcome::kHit) {
       if (with_links)
         add_nearest_link(surface_, link_position(start, direction, distance), ray.cosine_weight, row.links);
     } else {
       ++missed;
       direct += ray.cosine_weight;
       bent += direction;
-      counts.cut_short += fate == Fate::kOutOfSteps;
+      counts.truncated += fate == RayOutcome::kTruncated;
     }
   }
   counts.rays += rays_.size();
@@ -246,7 +246,7 @@ std::vector<RayRecord> MarchTracer::replay_texel(uint32_t texel) const {
     RayRecord record{
         glm::normalize(direction), ray.cosine_weight, ray.uniform_weight, false, 0, {0, 0}, 0, 0};
     double distance = 0;
-    if (march(start, direction, &distance) == Fate::kHit) {
+    if (march(start, direction, &distance) == RayOutcome::kHit) {
       const glm::dvec2 straight = glm::dvec2(start) + distance * glm::dvec2(direction);
       record.hit = true;
       record.hit_texel = link_position(start, direction, distance);

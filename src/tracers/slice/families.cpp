@@ -21,9 +21,9 @@ constexpr int kReadyTexelSegments = 16384, kReadyNodeSegments = 1024;
 constexpr size_t kBytesPerReadySegment = 560;  // about 22 crossings and their facets, and the corners
 
 // What a node sees of the sky is the light of its patch, and the few nodes next to a texel, most of all those
-// at the corners there, make most of its first bounce: corners have twice the azimuths. Links only lead on to
-// many others: corners look for them along every second one. (Along half as many again a bake costs a
-// twentieth less, and its second bounce has a fifth more noise.)
+// at the corners there, make most of its first bounce: corners have twice the azimuths. FormFactorMatrix only
+// lead on to many others: corners look for them along every second one. (Along half as many again a bake
+// costs a twentieth less, and its second bounce has a fifth more noise.)
 constexpr int kCornerFactor = 2;
 
 // Azimuths of a node: ten at least, or some in a deep fold would only meet each other and keep their light
@@ -72,8 +72,9 @@ SlicePaths make_node_paths(int azimuths, uint64_t seed, uint32_t half, uint32_t 
     const double shift_u = unit_interval(mix_bits(seed, kNodeShift, place));
     const double shift_v = unit_interval(mix_bits(seed, kNodeShift, place + 1));
     const uint32_t index = static_cast<uint32_t>(azimuth);
-    const glm::dvec2 point = sample_uniform_triangle({shift_modulo_one(radical_inverse(2, index), shift_u),
-                                                      shift_modulo_one(radical_inverse(3, index), shift_v)});
+    const glm::dvec2 point =
+        sample_uniform_triangle({cranley_patterson_rotate(radical_inverse(2, index), shift_u),
+                                 cranley_patterson_rotate(radical_inverse(3, index), shift_v)});
     const glm::dvec2 uv = node_start_uv(node, point);
     return make_slice_path(half == 0 ? uv : 1.0 - uv, angle, true);
   };
@@ -87,10 +88,10 @@ SlicePaths make_node_paths(int azimuths, uint64_t seed, uint32_t half, uint32_t 
 
 }  // namespace
 
-SliceFamilies make_slice_families(int azimuths, Patches patches, uint64_t seed) {
+SliceFamilies make_slice_families(int azimuths, PatchKind patches, uint64_t seed) {
   SliceFamilies families;
   families.texels = make_texel_paths(azimuths, seed);
-  if (patches != Patches::kFacets) return families;
+  if (patches != PatchKind::kFacets) return families;
   for (uint32_t half = 0; half < 2; ++half)
     for (uint32_t node = 0; node < kFineNodes; ++node)
       families.nodes.push_back(make_node_paths(azimuths, seed, half, node));

@@ -15,7 +15,7 @@ struct SliceFamilies {
 };
 
 // azimuths: of a texel. seed: which rotations, and where in their small copies of the facet nodes start.
-SliceFamilies make_slice_families(int azimuths, Patches patches, uint64_t seed);
+SliceFamilies make_slice_families(int azimuths, PatchKind patches, uint64_t seed);
 
 // Memory that a family's ready segments take, about, bytes.
 size_t ready_bytes(const SlicePaths& paths);

@@ -50,7 +50,7 @@ HeightPlane margined_heights(const Surface& surface, bool wrap) {
 }
 
 // Widens the window of every place of `plane` by `step` texels to the right and downwards. wide: scratch.
-void widen(const SliceField& field, int step, HeightPlane& plane, LargePageVector<float>& wide) {
+void widen(const HeightPyramid& field, int step, HeightPlane& plane, LargePageVector<float>& wide) {
   const size_t pitch = plane.pitch, rows = plane.values.size() / pitch, s = static_cast<size_t>(step);
   // Beyond the margin a wrapping map starts again (its margins on the left and above are 1); an open one has
   // nothing.
@@ -131,8 +131,8 @@ HeightPlane cut_into_strips(const HeightPlane& plane) {
 
 }  // namespace
 
-SliceField make_slice_field(const Surface& surface) {
-  SliceField field;
+HeightPyramid make_height_pyramid(const Surface& surface) {
+  HeightPyramid field;
   field.width = surface.width();
   field.height = surface.height();
   field.inverse_width = 1.0 / field.width;

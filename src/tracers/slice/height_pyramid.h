@@ -39,7 +39,7 @@ struct HeightPlane {
   const float* at(int x, int y) const { return values.data() + index(x, y); }
 };
 
-struct SliceField {
+struct HeightPyramid {
   int width = 0, height = 0;
   double inverse_width = 0, inverse_height = 0;
   bool wrap = true;
@@ -54,6 +54,6 @@ struct SliceField {
   std::array<HeightPlane, kSkipLevels> tallest;
 };
 
-SliceField make_slice_field(const Surface& surface);
+HeightPyramid make_height_pyramid(const Surface& surface);
 
 }  // namespace hemibake

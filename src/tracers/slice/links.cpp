@@ -37,19 +37,20 @@ SliceStretchSums sums_between(double low_slope, double high_slope) {
           (sin_high * sin_high - sin_low * sin_low) / 2};
 }
 
-double stretch_distance(const Surface& surface, const Stretch& stretch, double slope, glm::dvec2 direction) {
+double stretch_distance(const Surface& surface, const VisibleInterval& stretch, double slope,
+                        glm::dvec2 direction) {
   const FacetLine line(surface, stretch.facet, direction, stretch.high, stretch.inverse_distance);
   return std::min(line.far, line.distance_at(slope));
 }
 
-Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 direction,
-                     double max_distance) {
+VisibleInterval clip_stretch(const Surface& surface, const VisibleInterval& stretch, glm::dvec2 direction,
+                             double max_distance) {
   const FacetLine line(surface, stretch.facet, direction, stretch.high, stretch.inverse_distance);
   const double near = std::min(line.far, line.distance_at(static_cast<double>(stretch.low)));
   const bool near_inside = line.ray_length(near) < max_distance;
   const bool far_inside = line.ray_length(line.far) < max_distance;
   if (near_inside && far_inside) return stretch;
-  Stretch clipped = stretch;
+  VisibleInterval clipped = stretch;
   // The line leaves the circle of radius max_distance about the start at
   // (1 + g²) r² − 2 g d r + d² − max_distance² = 0.
   const double g = line.gradient, d = line.depth, scale = 1 + g * g;
@@ -70,8 +71,8 @@ Stretch clip_stretch(const Surface& surface, const Stretch& stretch, glm::dvec2 
   return clipped;
 }
 
-void append_hits(const Surface& surface, const Stretch& stretch, glm::dvec2 start, glm::dvec2 direction,
-                 double rim, float hits_per_weight, std::vector<SliceHit>& hits) {
+void append_hits(const Surface& surface, const VisibleInterval& stretch, glm::dvec2 start,
+                 glm::dvec2 direction, double rim, float hits_per_weight, std::vector<SliceHit>& hits) {
   const double low = static_cast<double>(stretch.low), high = static_cast<double>(stretch.high);
   const int pieces = 1 + static_cast<int>(stretch.weight * hits_per_weight);
   double begin = low;
@@ -89,9 +90,9 @@ void append_hits(const Surface& surface, const Stretch& stretch, glm::dvec2 star
 }
 
 void append_links(const Surface& surface, const PatchSet& patches, TexelLinks texel_links,
-                  const SliceHit& hit, double weight, double choice, std::vector<Link>& links) {
+                  const SliceHit& hit, double weight, double choice, std::vector<FormFactor>& links) {
   const glm::dvec2 uv(hit.u, hit.v);
-  if (patches.kind == Patches::kFacets) {
+  if (patches.kind == PatchKind::kFacets) {
     add_node_links(patches, hit.facet, uv, static_cast<double>(hit.distance), choice, weight, links);
   } else if (texel_links == TexelLinks::kNearest) {
     add_nearest_link(surface, facet_point_texels(surface, hit.facet, uv), weight, links);

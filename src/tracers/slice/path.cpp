@@ -69,7 +69,7 @@ SlicePath make_slice_path(const glm::dvec2& origin, double azimuth, bool starts_
   return {origin, direction, step, starts_in_facet};
 }
 
-glm::ivec2 window_corner(const SliceField& field, const SlicePath& path, int segment, int segments) {
+glm::ivec2 window_corner(const HeightPyramid& field, const SlicePath& path, int segment, int segments) {
   const glm::ivec2 corner = unwrapped_corner(path, segment, segments);
   if (!field.wrap) return corner;
   return {wrap_far(corner.x, field.width, field.inverse_width),
@@ -80,7 +80,7 @@ glm::dvec2 segment_begin(const SlicePath& path, int segment) {
   return path.origin + segment * path.step * path.direction - glm::dvec2(unwrapped_corner(path, segment, 1));
 }
 
-void find_crossings(const SliceField& field, const SlicePath& path, int segment, SegmentCrossings& found) {
+void find_crossings(const HeightPyramid& field, const SlicePath& path, int segment, SegmentCrossings& found) {
   const double near = segment * path.step, end = path.step + kOverlap;
   const glm::dvec2 d = path.direction, p = segment_begin(path, segment);
   const double first = segment == 0 ? kOverlap : -kOverlap;
@@ -130,7 +130,7 @@ void find_crossings(const SliceField& field, const SlicePath& path, int segment,
   found.count = count;
 }
 
-const ReadySegments& ready_segments(const SliceField& field, const SlicePaths& paths) {
+const ReadySegments& ready_segments(const HeightPyramid& field, const SlicePaths& paths) {
   ReadySegments& ready = *paths.ready;
   std::call_once(ready.made, [&] {
     SegmentCrossings found;

@@ -38,7 +38,7 @@ SlicePath make_slice_path(const glm::dvec2& origin, double azimuth, bool starts_
 
 // First corner of the square window over `segments` segments from `segment` on, relative to the start's cell;
 // wrapped into the map where it wraps.
-glm::ivec2 window_corner(const SliceField& field, const SlicePath& path, int segment, int segments);
+glm::ivec2 window_corner(const HeightPyramid& field, const SlicePath& path, int segment, int segments);
 
 // Where a segment begins, from the first corner of its own window, texels.
 glm::dvec2 segment_begin(const SlicePath& path, int segment);
@@ -57,7 +57,7 @@ struct SegmentCrossings {
 // is where the path enters the facet before the second: the crossing before the segment, the start on a
 // texel, or, for a start inside a facet, where the path leaves this facet. What a receiver sees begins behind
 // it.
-void find_crossings(const SliceField& field, const SlicePath& path, int segment, SegmentCrossings& found);
+void find_crossings(const HeightPyramid& field, const SlicePath& path, int segment, SegmentCrossings& found);
 
 // The nearest segments of all paths of a family.
 struct ReadySegments {
@@ -84,6 +84,6 @@ struct SlicePaths {
 };
 
 // Found when they are asked for first: families that a map has no receivers of need none.
-const ReadySegments& ready_segments(const SliceField& field, const SlicePaths& paths);
+const ReadySegments& ready_segments(const HeightPyramid& field, const SlicePaths& paths);
 
 }  // namespace hemibake

@@ -16,7 +16,7 @@ struct SegmentView {
 // For one thread. What it returns is good until the next call.
 class SegmentSource {
  public:
-  SegmentSource(const SliceField& field, const SlicePaths& paths)
+  SegmentSource(const HeightPyramid& field, const SlicePaths& paths)
       : field_(field), paths_(paths), ready_(ready_segments(field, paths)) {}
 
   void begin_path(size_t index) {
@@ -56,7 +56,7 @@ class SegmentSource {
 
   size_t ready_index(int segment) const { return first_ready_ + static_cast<size_t>(segment); }
 
-  const SliceField& field_;
+  const HeightPyramid& field_;
   const SlicePaths& paths_;
   const ReadySegments& ready_;
   const SlicePath* path_ = nullptr;

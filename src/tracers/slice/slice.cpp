@@ -65,7 +65,8 @@ class SliceTracer final : public Tracer {
  public:
   SliceTracer(const Surface& surface, const SliceOptions& options);
 
-  const PatchSet& patches() const override { return patches_; }
+  const Surface& surface() const override { return surface_; }
+  const PatchSet& patch_set() const override { return patches_; }
   void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const override {
     trace_texels(texel, with_links, {&row, 1}, counts);
   }
@@ -74,14 +75,13 @@ class SliceTracer final : public Tracer {
   }
   void trace_texels(uint32_t first, bool with_links, std::span<Row> rows,
                     TracerCounts& counts) const override;
-  void trace_tile(uint32_t map_width, const TexelTile& tile, std::span<Row> rows,
-                  TracerCounts& counts) const override;
+  void trace_tile(const TexelTile& tile, std::span<Row> rows, TracerCounts& counts) const override;
   void trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
                      TracerCounts& counts) const override;
   std::unique_ptr<Tracer> reseeded(uint64_t seed) const override {
     auto again = std::make_unique<SliceTracer>(*this);
     again->options_.seed = seed;
-    again->families_ = make_slice_families(options_.azimuths, options_.patches, seed);
+    again->families_ = make_slice_families(options_.azimuths, options_.patch_kind, seed);
     return again;
   }
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
@@ -91,7 +91,7 @@ class SliceTracer final : public Tracer {
   void choose_hits(double per_slice, uint64_t stream, uint64_t place, SlicePacket& packet) const;
   SlicePacket texel_packet(int x, int y) const;
   SlicePacket node_packet(const NodeGroup& group) const;
-  std::span<const PacketView> look(const SlicePaths& paths, WalkFor what,
+  std::span<const PacketView> look(const SlicePaths& paths, Query what,
                                    std::span<const SlicePacket> packets) const;
   void find_missed_hits(const SlicePaths& paths, const SlicePacket& packet, PacketView& view) const;
   void ask_texels(uint32_t first, uint32_t count, std::vector<AskedPacket>& asked) const;
@@ -105,17 +105,17 @@ class SliceTracer final : public Tracer {
   SliceOptions options_;
   PatchSet patches_;
   double max_distance_texels_;
-  SliceField field_;
+  HeightPyramid field_;
   SliceFamilies families_;
 };
 
 SliceTracer::SliceTracer(const Surface& surface, const SliceOptions& options)
     : surface_(surface),
       options_(options),
-      patches_(make_patches(surface, options.patches)),
+      patches_(make_patches(surface, options.patch_kind)),
       max_distance_texels_(options.max_distance_m / surface.texel_size_m),
-      field_(make_slice_field(surface)),
-      families_(make_slice_families(options.azimuths, options.patches, options.seed)) {}
+      field_(make_height_pyramid(surface)),
+      families_(make_slice_families(options.azimuths, options.patch_kind, options.seed)) {}
 
 int SliceTracer::turn_of(const SlicePaths& paths, uint64_t stream, uint64_t place) const {
   return static_cast<int>(unit_interval(mix_bits(options_.seed, stream, place)) * paths.turns);
@@ -174,16 +174,16 @@ SlicePacket SliceTracer::node_packet(const NodeGroup& group) const {
 }
 
 // What the packets see; good until this thread's next call.
-std::span<const PacketView> SliceTracer::look(const SlicePaths& paths, WalkFor what,
+std::span<const PacketView> SliceTracer::look(const SlicePaths& paths, Query what,
                                               std::span<const SlicePacket> packets) const {
   thread_local std::vector<PacketView> scratch;  // keeps its memory
   scratch.resize(std::max(scratch.size(), packets.size()));
   const std::span<PacketView> views(scratch.data(), packets.size());
   for (PacketView& view : views) clear(view);
-  const bool limited = std::isfinite(max_distance_texels_), some = what == WalkFor::kHits && !limited;
+  const bool limited = std::isfinite(max_distance_texels_), some = what == Query::kSampledHits && !limited;
   walk_packets(
       field_, paths,
-      {limited ? WalkFor::kStretches : what, some ? paths.azimuths_per_linked : 1, max_distance_texels_},
+      {limited ? Query::kAllIntervals : what, some ? paths.azimuths_per_linked : 1, max_distance_texels_},
       packets, views);
   for (size_t i = 0; i < packets.size(); ++i) {
     if (limited) clip_to_max_distance(paths, packets[i], views[i]);
@@ -209,7 +209,7 @@ void SliceTracer::find_missed_hits(const SlicePaths& paths, const SlicePacket& p
   }
   if (!any) return;
   PacketView again;
-  walk_packets(field_, paths, {WalkFor::kHits, 1, max_distance_texels_}, {&missed, 1}, {&again, 1});
+  walk_packets(field_, paths, {Query::kSampledHits, 1, max_distance_texels_}, {&missed, 1}, {&again, 1});
   for (size_t lane = 0; lane < kSliceLanes; ++lane)
     if (missed.hits_per_weight[lane] > 0) view.hits[lane] = std::move(again.hits[lane]);
 }
@@ -218,12 +218,12 @@ void SliceTracer::find_missed_hits(const SlicePaths& paths, const SlicePacket& p
 void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacket& packet,
                                        PacketView& view) const {
   for (size_t lane = 0; lane < kSliceLanes; ++lane) {
-    std::vector<Stretch> near_stretches;
-    for (const Stretch& stretch : view.stretches[lane]) {
+    std::vector<VisibleInterval> near_stretches;
+    for (const VisibleInterval& stretch : view.stretches[lane]) {
       const SlicePath& path = paths.paths[paths.path_index(packet.turn, static_cast<int>(stretch.azimuth))];
       const glm::dvec2 direction = path.direction;
       const glm::dvec2 start = glm::dvec2(packet.x + static_cast<int>(lane), packet.y) + path.origin;
-      Stretch near = clip_stretch(surface_, stretch, direction, max_distance_texels_);
+      VisibleInterval near = clip_stretch(surface_, stretch, direction, max_distance_texels_);
       const SliceStretchSums all =
           sums_between(static_cast<double>(stretch.low), static_cast<double>(stretch.high));
       const SliceStretchSums part =
@@ -256,7 +256,7 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
       length > 0 ? sky / length : glm::normalize(glm::dvec3(-packet.rim_x[lane], -packet.rim_y[lane], 1));
   row.links.clear();
   counts.rays += static_cast<uint64_t>(paths.azimuths);
-  counts.cut_short += view.cut_short[lane];
+  counts.truncated += view.truncated[lane];
   if (!with_links) return;
   // Where a path leaves its own facet at a corner, rounding may leave a little of it.
   double met = 0;
@@ -265,7 +265,7 @@ void SliceTracer::fill_row(const SlicePaths& paths, const SlicePacket& packet, c
   const double scale = met > 0 ? (1 - row.direct_over_pi) / met : 0;
   for (const SliceHit& hit : view.hits[lane]) {
     if (hit.facet == own_facet) continue;
-    choice = shift_modulo_one(choice, kGoldenStep);
+    choice = cranley_patterson_rotate(choice, kGoldenStep);
     append_links(surface_, patches_, options_.texel_links, hit, static_cast<double>(hit.weight) * scale,
                  choice, row.links);
   }
@@ -284,7 +284,7 @@ void SliceTracer::answer(const SlicePaths& paths, bool of_nodes, bool with_links
     std::vector<SlicePacket> packets;
     for (const AskedPacket& one : piece) packets.push_back(one.packet);
     const std::span<const PacketView> views =
-        look(paths, with_links ? WalkFor::kHits : WalkFor::kSky, packets);
+        look(paths, with_links ? Query::kSampledHits : Query::kHorizon, packets);
     for (size_t i = 0; i < piece.size(); ++i) {
       uint32_t receiver = piece[i].receiver;
       for (uint32_t lanes = piece[i].lanes; lanes != 0; lanes &= lanes - 1, ++receiver) {
@@ -318,8 +318,8 @@ void SliceTracer::trace_texels(uint32_t first, bool with_links, std::span<Row> r
   answer(families_.texels, false, with_links, asked, first, {}, rows, counts);
 }
 
-void SliceTracer::trace_tile(uint32_t map_width, const TexelTile& tile, std::span<Row> rows,
-                             TracerCounts& counts) const {
+void SliceTracer::trace_tile(const TexelTile& tile, std::span<Row> rows, TracerCounts& counts) const {
+  const uint32_t map_width = static_cast<uint32_t>(surface_.width());
   const uint32_t first = tile.y * map_width + tile.x;
   std::vector<AskedPacket> asked;
   for (uint32_t j = 0; j < tile.height; ++j) ask_texels(first + j * map_width, tile.width, asked);
@@ -328,7 +328,7 @@ void SliceTracer::trace_tile(uint32_t map_width, const TexelTile& tile, std::spa
 
 void SliceTracer::trace_patches(uint32_t first, bool with_links, std::span<Row> rows,
                                 TracerCounts& counts) const {
-  if (options_.patches == Patches::kTexels) return trace_texels(first, with_links, rows, counts);
+  if (options_.patch_kind == PatchKind::kTexels) return trace_texels(first, with_links, rows, counts);
   const uint32_t end = first + static_cast<uint32_t>(rows.size());
   std::vector<std::vector<AskedPacket>> asked(families_.nodes.size());
   for (uint32_t patch = first; patch < end;) {
@@ -349,7 +349,7 @@ std::vector<RayRecord> SliceTracer::replay_texel(uint32_t texel) const {
   const int lane = x % kSliceLanes;
   const SlicePacket packet = texel_packet(x - lane, y);
   return replay_slices(surface_, families_.texels, packet,
-                       look(families_.texels, WalkFor::kStretches, {&packet, 1})[0],
+                       look(families_.texels, Query::kAllIntervals, {&packet, 1})[0],
                        static_cast<size_t>(lane));
 }
 
@@ -361,7 +361,7 @@ constexpr size_t kBytesPerThread = size_t{2} << 20, kBytesPerThreadWithLinks = s
 }  // namespace
 
 size_t slice_tracer_bytes(const Surface& surface, const SliceOptions& options, bool with_links) {
-  const SliceFamilies families = make_slice_families(options.azimuths, options.patches, options.seed);
+  const SliceFamilies families = make_slice_families(options.azimuths, options.patch_kind, options.seed);
   size_t bytes = kFieldBytesPerTexel * surface.texel_count() + ready_bytes(families.texels);
   if (with_links)
     for (const SlicePaths& paths : families.nodes) bytes += ready_bytes(paths);

@@ -46,7 +46,7 @@ namespace HWY_NAMESPACE {
 // One path at a time, for packet after packet.
 class PathWalk {
  public:
-  PathWalk(const SliceField& field, const SlicePaths& paths, const WalkOptions& options)
+  PathWalk(const HeightPyramid& field, const SlicePaths& paths, const WalkOptions& options)
       : field_(field), options_(options), segments_(field, paths) {
     const double farthest = kFarthestMaps * std::max({field.width, field.height, kSegmentCells});
     last_segment_ = static_cast<int>(std::min(farthest, options.max_distance) / kSegmentCells);
@@ -59,7 +59,7 @@ class PathWalk {
   }
 
   // Adds what the packet sees along the path.
-  template <WalkFor kWhat>
+  template <Query kWhat>
   void walk(const SlicePacket& packet, uint32_t azimuth, PacketView& view) {
     const SlicePath& path = segments_.path();
     Lanes lanes = start(packet);
@@ -75,7 +75,7 @@ class PathWalk {
         segment += skipped;
         if (skipped > 0) continue;
       }
-      if constexpr (kWhat == WalkFor::kStretches) {
+      if constexpr (kWhat == Query::kAllIntervals) {
         find_stretches(packet, azimuth, segment, lanes, view);
       } else {
         raise_horizon(packet, segment, lanes);
@@ -85,7 +85,7 @@ class PathWalk {
     if (blocks_below_)
       for (V& slope : lanes.slope.part) slope = hn::Max(slope, hn::Zero(kF));
     add_sky(lanes.slope, path.direction, view.sky);
-    if constexpr (kWhat == WalkFor::kHits) find_hits(packet, azimuth, lanes, view);
+    if constexpr (kWhat == Query::kSampledHits) find_hits(packet, azimuth, lanes, view);
   }
 
  private:
@@ -118,7 +118,7 @@ class PathWalk {
            corner.x + kSliceLanes + kSegmentCells >= 0 && corner.y + kSegmentCells + 1 >= 0;
   }
 
-  const SliceField& field_;
+  const HeightPyramid& field_;
   WalkOptions options_;
   SegmentSource segments_;
   float inverse_step_ = 0;
@@ -141,9 +141,9 @@ HWY_INLINE Lanes PathWalk::start(const SlicePacket& packet) const {
     const uint32_t walked = packet.lanes >> p * kWidth;
     const uint8_t bits[8] = {static_cast<uint8_t>(walked), static_cast<uint8_t>(walked >> 8)};
     V slope = hn::IfThenElse(hn::LoadMaskBits(kF, bits), lanes.rim.part[p], hn::Set(kF, kClosed));
-    if (blocks_below_ && options_.what != WalkFor::kStretches) slope = hn::Max(slope, hn::Zero(kF));
+    if (blocks_below_ && options_.what != Query::kAllIntervals) slope = hn::Max(slope, hn::Zero(kF));
     lanes.slope.part[p] = slope;
-    if (options_.what == WalkFor::kStretches) lanes.above.part[p] = cosine_above(slope, lanes.rim.part[p]);
+    if (options_.what == Query::kAllIntervals) lanes.above.part[p] = cosine_above(slope, lanes.rim.part[p]);
   }
   return lanes;
 }
@@ -167,7 +167,7 @@ HWY_INLINE void PathWalk::count_cut_short(const Lanes& lanes, int segment, Packe
     uint8_t bits[8] = {};
     hn::StoreMaskBits(kF, hn::Gt(hn::Mul(lanes.to_top.part[p], near), lanes.slope.part[p]), bits);
     for (size_t lane = 0; lane < kWidth; ++lane)
-      view.cut_short[p * kWidth + lane] += (bits[lane / 8] >> (lane % 8)) & 1;
+      view.truncated[p * kWidth + lane] += (bits[lane / 8] >> (lane % 8)) & 1;
   }
 }
 
@@ -365,8 +365,8 @@ void add_hemisphere(const SlicePaths& paths, const SlicePacket& packet, SliceSum
   }
 }
 
-template <WalkFor kWhat>
-void walk_all(const SliceField& field, const SlicePaths& paths, const WalkOptions& options,
+template <Query kWhat>
+void walk_all(const HeightPyramid& field, const SlicePaths& paths, const WalkOptions& options,
               std::span<const SlicePacket> packets, std::span<PacketView> views) {
   // Path after path, so that a path's crossings and the heights it meets stay in the caches.
   std::vector<size_t> order(packets.size());
@@ -382,8 +382,8 @@ void walk_all(const SliceField& field, const SlicePaths& paths, const WalkOption
         turn = packets[index].turn;
         walk.begin_path(paths.path_index(turn, azimuth));
       }
-      if (kWhat == WalkFor::kHits && azimuth % options.azimuths_per_linked != 0) {
-        walk.walk<WalkFor::kSky>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
+      if (kWhat == Query::kSampledHits && azimuth % options.azimuths_per_linked != 0) {
+        walk.walk<Query::kHorizon>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
       } else {
         walk.walk<kWhat>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
       }
@@ -391,15 +391,15 @@ void walk_all(const SliceField& field, const SlicePaths& paths, const WalkOption
   }
 }
 
-void walk_packets(const SliceField& field, const SlicePaths& paths, const WalkOptions& options,
+void walk_packets(const HeightPyramid& field, const SlicePaths& paths, const WalkOptions& options,
                   std::span<const SlicePacket> packets, std::span<PacketView> views) {
   switch (options.what) {
-    case WalkFor::kSky:
-      return walk_all<WalkFor::kSky>(field, paths, options, packets, views);
-    case WalkFor::kHits:
-      return walk_all<WalkFor::kHits>(field, paths, options, packets, views);
-    case WalkFor::kStretches:
-      return walk_all<WalkFor::kStretches>(field, paths, options, packets, views);
+    case Query::kHorizon:
+      return walk_all<Query::kHorizon>(field, paths, options, packets, views);
+    case Query::kSampledHits:
+      return walk_all<Query::kSampledHits>(field, paths, options, packets, views);
+    case Query::kAllIntervals:
+      return walk_all<Query::kAllIntervals>(field, paths, options, packets, views);
   }
 }
 
@@ -412,7 +412,7 @@ namespace hemibake {
 
 HWY_EXPORT(walk_packets);
 
-void walk_packets(const SliceField& field, const SlicePaths& paths, const WalkOptions& options,
+void walk_packets(const HeightPyramid& field, const SlicePaths& paths, const WalkOptions& options,
                   std::span<const SlicePacket> packets, std::span<PacketView> views) {
   HWY_DYNAMIC_DISPATCH(walk_packets)(field, paths, options, packets, views);
 }

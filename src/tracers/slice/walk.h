@@ -37,7 +37,7 @@ struct SliceSums {
 };
 
 // A piece of facet that a receiver sees along one azimuth, between two slopes from its start.
-struct Stretch {
+struct VisibleInterval {
   uint32_t facet;
   float weight;            // ∫ cosine to the receiver's normal, over normal.z, as in SliceSums
   float low, high;         // slopes
@@ -55,11 +55,11 @@ struct SliceHit {
 
 // What every lane of a packet sees.
 struct PacketView {
-  SliceSums hemisphere;                       // everything above the plane normal to the receiver's normal
-  SliceSums sky;                              // what of it is sky
-  LaneArray<std::vector<SliceHit>> hits;      // by azimuth, then by distance
-  LaneArray<std::vector<Stretch>> stretches;  // the same
-  LaneArray<uint32_t> cut_short{};
+  SliceSums hemisphere;                   // everything above the plane normal to the receiver's normal
+  SliceSums sky;                          // what of it is sky
+  LaneArray<std::vector<SliceHit>> hits;  // by azimuth, then by distance
+  LaneArray<std::vector<VisibleInterval>> stretches;  // the same
+  LaneArray<uint32_t> truncated{};
 };
 
 // ∫ cosine to the normal of a lane's receiver, over normal.z, of what the sums add up.
@@ -71,23 +71,23 @@ inline double cosine_sum(const SlicePacket& packet, const SliceSums& sums, size_
 // Keeps the memory of hits and stretches.
 inline void clear(PacketView& view) {
   view.hemisphere = view.sky = {};
-  view.cut_short = {};
+  view.truncated = {};
   for (auto& hits : view.hits) hits.clear();
   for (auto& stretches : view.stretches) stretches.clear();
 }
 
 // What a walk is for, besides the sky: a sample of what is seen below the horizon, or all of it.
-enum class WalkFor { kSky, kHits, kStretches };
+enum class Query { kHorizon, kSampledHits, kAllIntervals };
 
 struct WalkOptions {
-  WalkFor what = WalkFor::kSky;
+  Query what = Query::kHorizon;
   int azimuths_per_linked = 1;  // hits are sampled along every n-th azimuth only
   double max_distance =
       std::numeric_limits<double>::infinity();  // horizontal, texels: no need to go on beyond
 };
 
 // Adds to the views of the packets what they see. Packets near each other are best given together.
-void walk_packets(const SliceField& field, const SlicePaths& paths, const WalkOptions& options,
+void walk_packets(const HeightPyramid& field, const SlicePaths& paths, const WalkOptions& options,
                   std::span<const SlicePacket> packets, std::span<PacketView> views);
 
 }  // namespace hemibake

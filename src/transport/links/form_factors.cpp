@@ -15,7 +15,7 @@
 namespace hemibake {
 namespace {
 
-const std::byte* packed_bytes(const LinkBlock& block) {
+const std::byte* packed_bytes(const FormFactorBlock& block) {
   return block.spilled ? block.spilled : block.packed.data();
 }
 
@@ -24,14 +24,14 @@ const std::byte* packed_bytes(const LinkBlock& block) {
 template <class Visit>
 void visit_packed(const BlockView& view, const Visit& visit) {
   const uint32_t most_weight = (1u << view.weight_bits) - 1;
-  const uint32_t most_step = (1u << (LinkBlock::kCodeBits - view.weight_bits)) - 1;
+  const uint32_t most_step = (1u << (FormFactorBlock::kCodeBits - view.weight_bits)) - 1;
   const uint16_t* code = view.codes;
-  for (uint32_t first = 0; first < view.filled; first += LinkBlock::kRowsInTurn) {
-    uint32_t column[LinkBlock::kRowsInTurn];
-    for (uint32_t i = 0; i < LinkBlock::kRowsInTurn && first + i < view.filled; ++i)
+  for (uint32_t first = 0; first < view.filled; first += FormFactorBlock::kRowsInTurn) {
+    uint32_t column[FormFactorBlock::kRowsInTurn];
+    for (uint32_t i = 0; i < FormFactorBlock::kRowsInTurn && first + i < view.filled; ++i)
       column[i] = view.before_start(first + i);
     for (uint32_t k = 0; view.rows_as_long[k] > first; ++k) {
-      const uint32_t turn = std::min(LinkBlock::kRowsInTurn, view.rows_as_long[k] - first);
+      const uint32_t turn = std::min(FormFactorBlock::kRowsInTurn, view.rows_as_long[k] - first);
       for (uint32_t i = 0; i < turn; ++i, ++code) {
         const uint32_t step = *code >> view.weight_bits, weight = *code & most_weight;
         column[i] += weight == 0 ? step * most_step : step;
@@ -43,28 +43,28 @@ void visit_packed(const BlockView& view, const Visit& visit) {
 
 }  // namespace
 
-uint64_t Links::count() const {
+uint64_t FormFactorMatrix::count() const {
   uint64_t links = 0;
-  for (const LinkBlock& block : blocks) links += block.links;
+  for (const FormFactorBlock& block : blocks) links += block.links;
   return links;
 }
 
-size_t Links::stored_bytes() const {
-  size_t bytes = blocks.size() * sizeof(LinkBlock);
-  for (const LinkBlock& block : blocks) bytes += block.packed_bytes;
+size_t FormFactorMatrix::stored_bytes() const {
+  size_t bytes = blocks.size() * sizeof(FormFactorBlock);
+  for (const FormFactorBlock& block : blocks) bytes += block.packed_bytes;
   return bytes;
 }
 
-Links make_links(uint32_t rows, uint32_t columns, std::shared_ptr<SpillFile> spill) {
-  Links links;
+FormFactorMatrix make_form_factors(uint32_t rows, uint32_t columns, std::shared_ptr<SpillFile> spill) {
+  FormFactorMatrix links;
   links.spill = std::move(spill);
   links.rows = rows;
   links.columns = columns;
-  links.blocks.resize((rows + Links::kRowsPerBlock - 1) / Links::kRowsPerBlock);
+  links.blocks.resize((rows + FormFactorMatrix::kRowsPerBlock - 1) / FormFactorMatrix::kRowsPerBlock);
   return links;
 }
 
-void append_row(LinkBlock& block, std::span<const Link> row) {
+void append_row(FormFactorBlock& block, std::span<const FormFactor> row) {
   for (size_t i = 0; i < row.size(); ++i) {
     if (!std::isfinite(row[i].weight))
       throw std::logic_error(
@@ -78,22 +78,22 @@ void append_row(LinkBlock& block, std::span<const Link> row) {
   block.open->ends.push_back(static_cast<uint32_t>(block.open->links.size()));
 }
 
-void finish_block(Links& links, size_t index) {
-  LinkBlock& block = links.blocks[index];
-  const size_t first = index * Links::kRowsPerBlock;
+void finish_block(FormFactorMatrix& links, size_t index) {
+  FormFactorBlock& block = links.blocks[index];
+  const size_t first = index * FormFactorMatrix::kRowsPerBlock;
   expect_equal(block.open ? block.open->ends.size() : 0,
-               std::min<size_t>(Links::kRowsPerBlock, links.rows - first), "rows of a block");
+               std::min<size_t>(FormFactorMatrix::kRowsPerBlock, links.rows - first), "rows of a block");
   block = pack_block(*block.open);
   if (!links.spill) return;
   block.spilled = links.spill->store({std::span<const std::byte>(block.packed)});
   block.packed = std::vector<std::byte>();  // `= {}` would keep the memory
 }
 
-void finish_blocks(Links& links) {
+void finish_blocks(FormFactorMatrix& links) {
   for (size_t b = 0; b < links.blocks.size(); ++b) finish_block(links, b);
 }
 
-BlockView view_block(const LinkBlock& block) {
+BlockView view_block(const FormFactorBlock& block) {
   BlockView view{};
   view.rows = block.rows;
   view.base = block.base;
@@ -110,11 +110,11 @@ BlockView view_block(const LinkBlock& block) {
   return view;
 }
 
-void close_view(const LinkBlock& block) {
+void close_view(const FormFactorBlock& block) {
   if (block.spilled) SpillFile::release(block.spilled, block.packed_bytes);
 }
 
-void unpack_block(const LinkBlock& block, BlockRows& rows) {
+void unpack_block(const FormFactorBlock& block, BlockRows& rows) {
   constexpr uint32_t kNone = 0xffffffff;
   const BlockView view = view_block(block);
   // A row's columns ascend; a multiple may be in several parts.
@@ -130,12 +130,12 @@ void unpack_block(const LinkBlock& block, BlockRows& rows) {
   for (uint32_t r = 0; r < view.rows; ++r) rows.row_begin[r + 1] += rows.row_begin[r];
   for (uint32_t place = 0; place < view.filled; ++place)
     quanta[view.row[place]] = view.sum(place) / quanta[view.row[place]];
-  rows.patches.assign(rows.row_begin.back(), 0);
-  std::vector<double> multiples(rows.patches.size());
+  rows.columns.assign(rows.row_begin.back(), 0);
+  std::vector<double> multiples(rows.columns.size());
   std::vector<uint32_t> end(rows.row_begin.begin(), rows.row_begin.end() - 1);
   visit_packed(view, [&](uint32_t row, uint32_t column, uint32_t multiple) {
-    if (end[row] == rows.row_begin[row] || rows.patches[end[row] - 1] != column)
-      rows.patches[end[row]++] = column;
+    if (end[row] == rows.row_begin[row] || rows.columns[end[row] - 1] != column)
+      rows.columns[end[row]++] = column;
     multiples[end[row] - 1] += multiple;
   });
   rows.weights.resize(multiples.size());
@@ -145,13 +145,13 @@ void unpack_block(const LinkBlock& block, BlockRows& rows) {
   close_view(block);
 }
 
-std::vector<double> row_sums(const Links& links) {
+std::vector<double> row_sums(const FormFactorMatrix& links) {
   std::vector<double> sums(links.rows);
   parallel_for(links.blocks.size(), 1, [&](size_t first, size_t last) {
     for (size_t b = first; b < last; ++b) {
       const BlockView view = view_block(links.blocks[b]);
       for (uint32_t place = 0; place < view.filled; ++place)
-        sums[b * Links::kRowsPerBlock + view.row[place]] = view.sum(place);
+        sums[b * FormFactorMatrix::kRowsPerBlock + view.row[place]] = view.sum(place);
       close_view(links.blocks[b]);
     }
   });

@@ -34,11 +34,11 @@ class SpillFile;
 
 // Rows appended and not packed yet: the links of all, and where each row's end.
 struct OpenRows {
-  std::vector<Link> links;
+  std::vector<FormFactor> links;
   std::vector<uint32_t> ends;
 };
 
-struct LinkBlock {
+struct FormFactorBlock {
   static constexpr uint32_t kRowsInTurn = 16;
   static constexpr int kCodeBits = 16;
   // Zeros after all else: vectors are read whole.
@@ -58,13 +58,13 @@ struct LinkBlock {
   std::unique_ptr<OpenRows> open;  // until the block is finished
 };
 
-struct Links {
+struct FormFactorMatrix {
   static constexpr uint32_t kRowsPerBlock = 256;
 
   uint32_t rows = 0;
-  uint32_t columns = 0;              // at most 2³¹
-  std::vector<LinkBlock> blocks;     // ⌈rows / kRowsPerBlock⌉, each with kRowsPerBlock rows but the last
-  std::shared_ptr<SpillFile> spill;  // where finished blocks go; none: they stay in memory
+  uint32_t columns = 0;                 // at most 2³¹
+  std::vector<FormFactorBlock> blocks;  // ⌈rows / kRowsPerBlock⌉, each with kRowsPerBlock rows but the last
+  std::shared_ptr<SpillFile> spill;     // where finished blocks go; none: they stay in memory
 
   bool empty() const { return blocks.empty(); }
   uint64_t count() const;       // stored links: columns with a weight
@@ -72,17 +72,18 @@ struct Links {
 };
 
 // Rows `rows`, nothing linked yet.
-Links make_links(uint32_t rows, uint32_t columns, std::shared_ptr<SpillFile> spill = nullptr);
+FormFactorMatrix make_form_factors(uint32_t rows, uint32_t columns,
+                                   std::shared_ptr<SpillFile> spill = nullptr);
 
 // Appends the next row of a block. row: ascending by patch, each patch once; weights finite, Σ > 0 or no link
 // is stored, weights below 0 (rounding of an almost empty row) become 0. Throws std::logic_error where a
 // weight is not finite or patches do not ascend.
-void append_row(LinkBlock& block, std::span<const Link> row);
+void append_row(FormFactorBlock& block, std::span<const FormFactor> row);
 
 // No more rows come to block `index`, which has all of them: packs it, and spills it where links are spilled.
 // Throws InputError where the disk is full.
-void finish_block(Links& links, size_t index);
-void finish_blocks(Links& links);  // all of them
+void finish_block(FormFactorMatrix& links, size_t index);
+void finish_blocks(FormFactorMatrix& links);  // all of them
 
 // A finished block wherever it lies. Place: of a row in the order of the block, by falling length.
 struct BlockView {
@@ -104,36 +105,36 @@ struct BlockView {
   // The column before the first one a row may lead to; wraps around below 0.
   uint32_t before_start(uint32_t place) const { return base + (uint32_t{start[place]} << start_shift) - 1; }
 };
-BlockView view_block(const LinkBlock& block);
+BlockView view_block(const FormFactorBlock& block);
 // The view is not needed any more: memory of a spilled block is given back.
-void close_view(const LinkBlock& block);
+void close_view(const FormFactorBlock& block);
 
 // The links of a block's rows, weights as packed: row i has [row_begin[i], row_begin[i + 1]).
 struct BlockRows {
   std::vector<uint32_t> row_begin;
-  std::vector<uint32_t> patches;
+  std::vector<uint32_t> columns;
   std::vector<float> weights;
 };
-void unpack_block(const LinkBlock& block, BlockRows& rows);
+void unpack_block(const FormFactorBlock& block, BlockRows& rows);
 
 // Calls visit(row, its patches, their weights) for the rows of block `index`, ascending.
 template <class Visit>
-void visit_rows(const Links& links, size_t index, const Visit& visit) {
+void visit_rows(const FormFactorMatrix& links, size_t index, const Visit& visit) {
   BlockRows rows;
   unpack_block(links.blocks[index], rows);
   for (size_t i = 0; i + 1 < rows.row_begin.size(); ++i) {
     const size_t begin = rows.row_begin[i], count = rows.row_begin[i + 1] - begin;
-    visit(static_cast<uint32_t>(index * Links::kRowsPerBlock + i),
-          std::span<const uint32_t>(rows.patches).subspan(begin, count),
+    visit(static_cast<uint32_t>(index * FormFactorMatrix::kRowsPerBlock + i),
+          std::span<const uint32_t>(rows.columns).subspan(begin, count),
           std::span<const float>(rows.weights).subspan(begin, count));
   }
 }
 
 // out[i] = Σ_j w_ij · values[j], values rounded to float, products and sums in double: the same numbers on
 // every machine and at any thread count. values: one per column; out: one per row.
-void gather(const Links& links, std::span<const double> values, std::span<double> out);
+void multiply(const FormFactorMatrix& links, std::span<const double> values, std::span<double> out);
 
 // Σ_j w_ij of every row: to half of 2⁻²⁴ of the least power of two that no sum of its block exceeds.
-std::vector<double> row_sums(const Links& links);
+std::vector<double> row_sums(const FormFactorMatrix& links);
 
 }  // namespace hemibake

@@ -22,7 +22,7 @@ namespace hemibake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr uint32_t kTurn = LinkBlock::kRowsInTurn;
+constexpr uint32_t kTurn = FormFactorBlock::kRowsInTurn;
 
 #if HWY_TARGET == HWY_SCALAR
 
@@ -30,7 +30,7 @@ constexpr uint32_t kTurn = LinkBlock::kRowsInTurn;
 void gather_block(const BlockView& block, const float* HWY_RESTRICT values, double* HWY_RESTRICT out) {
   const uint16_t* HWY_RESTRICT code = block.codes;
   const uint32_t most_weight = (1u << block.weight_bits) - 1;
-  const uint32_t most_step = (1u << (LinkBlock::kCodeBits - block.weight_bits)) - 1;
+  const uint32_t most_step = (1u << (FormFactorBlock::kCodeBits - block.weight_bits)) - 1;
   std::fill(out, out + block.rows, 0.0);
   for (uint32_t first = 0; first < block.filled; first += kTurn) {
     uint32_t column[kTurn] = {}, total[kTurn] = {};
@@ -136,7 +136,7 @@ class Decoder {
     const U step = hn::ShiftRightSame(code, block_.weight_bits), weight = hn::And(code, most_weight_);
     const auto is_far = hn::Eq(weight, hn::Zero(kU)), is_large = hn::Eq(step, hn::Zero(kU));
     // Times the largest step, times the largest weight.
-    const U far = hn::Sub(hn::ShiftLeftSame(step, LinkBlock::kCodeBits - block_.weight_bits), step);
+    const U far = hn::Sub(hn::ShiftLeftSame(step, FormFactorBlock::kCodeBits - block_.weight_bits), step);
     const U large = hn::Sub(hn::ShiftLeftSame(weight, block_.weight_bits), weight);
     const U multiple = hn::IfThenElse(is_large, large, weight);
     columns_[part] = hn::Add(columns_[part], hn::IfThenElse(is_far, far, step));
@@ -240,14 +240,14 @@ LargePageVector<float> as_float(std::span<const double> values) {
 
 }  // namespace
 
-void gather(const Links& links, std::span<const double> values, std::span<double> out) {
+void multiply(const FormFactorMatrix& links, std::span<const double> values, std::span<double> out) {
   expect_equal(values.size(), size_t{links.columns}, "values given to gather");
   expect_equal(out.size(), size_t{links.rows}, "results asked of gather");
   const LargePageVector<float> rounded = as_float(values);
   parallel_for(links.blocks.size(), kBlocksPerTask, [&](size_t first, size_t last) {
     for (size_t b = first; b < last; ++b) {
       HWY_DYNAMIC_DISPATCH(gather_block)
-      (view_block(links.blocks[b]), rounded.data(), out.data() + b * Links::kRowsPerBlock);
+      (view_block(links.blocks[b]), rounded.data(), out.data() + b * FormFactorMatrix::kRowsPerBlock);
       close_view(links.blocks[b]);
     }
   });

@@ -20,11 +20,11 @@ constexpr int kMostWeightBits = 10;
 constexpr int kSumBits = 24;
 constexpr size_t kBytesPerRow = 5;  // its sum, its index, its start
 
-double weight_of(const Link& link) { return std::max(0.0, static_cast<double>(link.weight)); }
+double weight_of(const FormFactor& link) { return std::max(0.0, static_cast<double>(link.weight)); }
 
 // The smallest whole multiples of one unit that all weights are, within what rounding to float leaves of
 // them; their sum, or 0 where there is no such unit.
-uint64_t whole_multiples(std::span<const Link> row, double least, std::span<uint32_t> multiples) {
+uint64_t whole_multiples(std::span<const FormFactor> row, double least, std::span<uint32_t> multiples) {
   // Rounding makes a mean of at most kMostFineness: the least multiple is no larger unless more than half of
   // the links were lost to it.
   constexpr int kMostParts = 2 * static_cast<int>(kMostFineness);
@@ -38,7 +38,7 @@ uint64_t whole_multiples(std::span<const Link> row, double least, std::span<uint
   // The unit is the least weight over the least common denominator of all weights over it.
   const double per_least = 1 / least;
   int parts = 1;
-  for (const Link& link : row) {
+  for (const FormFactor& link : row) {
     const double over_least = weight_of(link) * per_least;
     if (over_least > most_multiple) return 0;
     int common = parts;
@@ -64,7 +64,8 @@ struct Remainder {
 };
 
 // Multiples that add up to `total`, by the largest remainders.
-void round_multiples(std::span<const Link> row, double quantum, double total, std::span<uint32_t> multiples) {
+void round_multiples(std::span<const FormFactor> row, double quantum, double total,
+                     std::span<uint32_t> multiples) {
   thread_local std::vector<Remainder> remainders;  // scratch
   remainders.clear();
   double rounded = 0;
@@ -86,10 +87,10 @@ void round_multiples(std::span<const Link> row, double quantum, double total, st
 }
 
 // The sum of the weights; multiples of the row's quantum that have their shares of it.
-double round_weights(std::span<const Link> row, std::span<uint32_t> multiples) {
+double round_weights(std::span<const FormFactor> row, std::span<uint32_t> multiples) {
   double sum = 0, positive = 0, largest = 0, least = std::numeric_limits<double>::infinity();
   size_t count = 0;
-  for (const Link& link : row) {
+  for (const FormFactor& link : row) {
     const double weight = static_cast<double>(link.weight);
     sum += weight;
     if (weight <= 0) continue;
@@ -124,7 +125,7 @@ uint32_t code_count(const Rows& rows, size_t row) {
   return rows.code_ends[row] - begin_of(rows.code_ends, row);
 }
 
-void round_rows(const OpenRows& open, LinkBlock& block, Rows& rows) {
+void round_rows(const OpenRows& open, FormFactorBlock& block, Rows& rows) {
   rows.multiples.assign(open.links.size(), 0);
   rows.sums.resize(block.rows);
   double largest = 0;
@@ -145,7 +146,7 @@ void round_rows(const OpenRows& open, LinkBlock& block, Rows& rows) {
 }
 
 // Where the rows start: as near before their first columns as 8 bits tell.
-void set_starts(const OpenRows& open, LinkBlock& block, Rows& rows) {
+void set_starts(const OpenRows& open, FormFactorBlock& block, Rows& rows) {
   constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
   std::vector<uint32_t>& first = rows.before;
   first.assign(block.rows, kNone);
@@ -188,7 +189,7 @@ size_t more_codes(int number_bits, int bits) {
 }
 
 // The width of weights that takes the fewest codes.
-void choose_weight_bits(const OpenRows& open, LinkBlock& block, const Rows& rows) {
+void choose_weight_bits(const OpenRows& open, FormFactorBlock& block, const Rows& rows) {
   std::array<size_t, 33> steps{}, multiples{};  // by their numbers of bits
   for (size_t r = 0; r < block.rows; ++r)
     visit_steps(open, rows, r, [&](uint32_t step, uint32_t multiple) {
@@ -199,7 +200,7 @@ void choose_weight_bits(const OpenRows& open, LinkBlock& block, const Rows& rows
   for (int weight_bits = 1; weight_bits <= kMostWeightBits; ++weight_bits) {
     size_t more = 0;
     for (size_t bits = 0; bits < steps.size(); ++bits)
-      more += steps[bits] * more_codes(static_cast<int>(bits), LinkBlock::kCodeBits - weight_bits) +
+      more += steps[bits] * more_codes(static_cast<int>(bits), FormFactorBlock::kCodeBits - weight_bits) +
               multiples[bits] * more_codes(static_cast<int>(bits), weight_bits);
     if (more >= fewest) continue;
     fewest = more;
@@ -208,10 +209,10 @@ void choose_weight_bits(const OpenRows& open, LinkBlock& block, const Rows& rows
   block.links = static_cast<uint32_t>(std::accumulate(multiples.begin(), multiples.end(), size_t{0}));
 }
 
-void encode_rows(const OpenRows& open, LinkBlock& block, Rows& rows) {
+void encode_rows(const OpenRows& open, FormFactorBlock& block, Rows& rows) {
   const int weight_bits = block.weight_bits;
   const uint32_t most_weight = (1u << weight_bits) - 1;
-  const uint32_t most_step = (1u << (LinkBlock::kCodeBits - weight_bits)) - 1;
+  const uint32_t most_step = (1u << (FormFactorBlock::kCodeBits - weight_bits)) - 1;
   rows.codes.clear();
   rows.code_ends.resize(block.rows);
   const auto emit = [&](uint32_t step, uint32_t weight) {
@@ -236,7 +237,7 @@ void encode_rows(const OpenRows& open, LinkBlock& block, Rows& rows) {
 }
 
 // Rows by falling number of codes; those without any are left out.
-void sort_rows(LinkBlock& block, Rows& rows) {
+void sort_rows(FormFactorBlock& block, Rows& rows) {
   rows.order.resize(block.rows);
   std::iota(rows.order.begin(), rows.order.end(), 0u);
   std::ranges::stable_sort(rows.order, std::greater{}, [&](uint32_t row) { return code_count(rows, row); });
@@ -251,23 +252,23 @@ std::byte* write(std::byte* to, Number number) {
 }
 
 std::byte* write_codes(const Rows& rows, std::byte* to) {
-  for (size_t first = 0; first < rows.order.size(); first += LinkBlock::kRowsInTurn) {
-    std::array<uint32_t, LinkBlock::kRowsInTurn> next{}, end{};
-    for (uint32_t i = 0; i < LinkBlock::kRowsInTurn && first + i < rows.order.size(); ++i) {
+  for (size_t first = 0; first < rows.order.size(); first += FormFactorBlock::kRowsInTurn) {
+    std::array<uint32_t, FormFactorBlock::kRowsInTurn> next{}, end{};
+    for (uint32_t i = 0; i < FormFactorBlock::kRowsInTurn && first + i < rows.order.size(); ++i) {
       next[i] = begin_of(rows.code_ends, rows.order[first + i]);
       end[i] = rows.code_ends[rows.order[first + i]];
     }
     while (next[0] < end[0])
-      for (uint32_t i = 0; i < LinkBlock::kRowsInTurn && next[i] < end[i]; ++i)
+      for (uint32_t i = 0; i < FormFactorBlock::kRowsInTurn && next[i] < end[i]; ++i)
         to = write(to, rows.codes[next[i]++]);
   }
   return to;
 }
 
 // In the order of BlockView.
-void write_block(LinkBlock& block, const Rows& rows) {
+void write_block(FormFactorBlock& block, const Rows& rows) {
   block.packed_bytes = (size_t{block.longest} + 1 + block.codes) * sizeof(uint16_t) +
-                       rows.order.size() * kBytesPerRow + LinkBlock::kPadding;
+                       rows.order.size() * kBytesPerRow + FormFactorBlock::kPadding;
   block.packed.resize(block.packed_bytes);
   std::byte* to = block.packed.data();
   uint32_t longer = static_cast<uint32_t>(rows.order.size());
@@ -287,9 +288,9 @@ void write_block(LinkBlock& block, const Rows& rows) {
 
 }  // namespace
 
-LinkBlock pack_block(const OpenRows& open) {
+FormFactorBlock pack_block(const OpenRows& open) {
   thread_local Rows rows;  // scratch
-  LinkBlock block;
+  FormFactorBlock block;
   block.rows = static_cast<uint32_t>(open.ends.size());
   round_rows(open, block, rows);
   set_starts(open, block, rows);

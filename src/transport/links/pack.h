@@ -6,6 +6,6 @@
 namespace hemibake {
 
 // The rows as a block in memory, without open rows.
-LinkBlock pack_block(const OpenRows& open);
+FormFactorBlock pack_block(const OpenRows& open);
 
 }  // namespace hemibake

@@ -34,7 +34,7 @@ float passed_on(float weight, uint32_t patch, std::span<const float> albedo) {
 }
 
 // The strongest first.
-std::vector<StrongLink> strong_links(const Links& links, std::span<const float> albedo) {
+std::vector<StrongLink> strong_connections(const FormFactorMatrix& links, std::span<const float> albedo) {
   std::vector<std::vector<StrongLink>> of_blocks(links.blocks.size());
   parallel_for(links.blocks.size(), 1, [&](size_t begin, size_t end) {
     for (size_t b = begin; b < end; ++b) {
@@ -64,9 +64,9 @@ std::vector<StrongLink> strong_links(const Links& links, std::span<const float> 
 }
 
 // Patches that belong together have one root, the lowest of them.
-class Unions {
+class DisjointSets {
  public:
-  explicit Unions(uint32_t patches) : parent_(patches), size_(patches, 1) {
+  explicit DisjointSets(uint32_t patches) : parent_(patches), size_(patches, 1) {
     std::iota(parent_.begin(), parent_.end(), 0u);
   }
 
@@ -86,12 +86,12 @@ class Unions {
   std::vector<uint8_t> size_;  // of roots
 };
 
-Unions join_strong(const Links& links, std::span<const float> albedo) {
-  Unions unions(links.rows);
+DisjointSets join_strong(const FormFactorMatrix& links, std::span<const float> albedo) {
+  DisjointSets unions(links.rows);
   size_t entries = 0;
-  for (const StrongLink& link : strong_links(links, albedo)) {
+  for (const StrongLink& link : strong_connections(links, albedo)) {
     const uint32_t a = unions.root(link.row), b = unions.root(link.column);
-    if (a == b || unions.size(a) + unions.size(b) > LinkGroups::kMostMembers) continue;
+    if (a == b || unions.size(a) + unions.size(b) > BlockJacobi::kMostMembers) continue;
     const size_t joined = unions.size(a) + unions.size(b);
     const auto entries_of = [](size_t size) { return size > 1 ? size * size : 0; };
     const size_t more = entries_of(joined) - entries_of(unions.size(a)) - entries_of(unions.size(b));
@@ -103,8 +103,8 @@ Unions join_strong(const Links& links, std::span<const float> albedo) {
 }
 
 // Members and places for the inverses. group: of every patch.
-LinkGroups list_groups(Unions& unions, std::vector<uint32_t>& group) {
-  LinkGroups groups;
+BlockJacobi list_groups(DisjointSets& unions, std::vector<uint32_t>& group) {
+  BlockJacobi groups;
   size_t entries = 0;
   uint32_t members = 0;
   for (uint32_t patch = 0; patch < group.size(); ++patch) {
@@ -129,14 +129,14 @@ LinkGroups list_groups(Unions& unions, std::vector<uint32_t>& group) {
   return groups;
 }
 
-std::span<const uint32_t> members_of(const LinkGroups& groups, size_t group) {
+std::span<const uint32_t> members_of(const BlockJacobi& groups, size_t group) {
   return std::span(groups.members)
       .subspan(groups.first_member[group], groups.first_member[group + 1] - groups.first_member[group]);
 }
 
 // W diag(albedo) among the members of each group, where the inverse will be.
-void collect_entries(const Links& links, std::span<const float> albedo, std::span<const uint32_t> group,
-                     LinkGroups& groups) {
+void collect_entries(const FormFactorMatrix& links, std::span<const float> albedo,
+                     std::span<const uint32_t> group, BlockJacobi& groups) {
   parallel_for(links.blocks.size(), 1, [&](size_t begin, size_t end) {
     for (size_t b = begin; b < end; ++b)
       visit_rows(links, b,
@@ -158,7 +158,7 @@ void collect_entries(const Links& links, std::span<const float> albedo, std::spa
 // `entries` become (1 − entries)⁻¹, or 1 where that does not exist. Gauss and Jordan, in place; rows that
 // pass on at most all light need no pivots.
 void invert(std::span<float> entries, size_t size) {
-  std::array<double, LinkGroups::kMostMembers * LinkGroups::kMostMembers> a;
+  std::array<double, BlockJacobi::kMostMembers * BlockJacobi::kMostMembers> a;
   for (size_t i = 0; i < size * size; ++i) a[i] = -static_cast<double>(entries[i]);
   for (size_t i = 0; i < size; ++i) a[i * size + i] += 1;
   for (size_t k = 0; k < size; ++k) {
@@ -181,11 +181,11 @@ void invert(std::span<float> entries, size_t size) {
 
 }  // namespace
 
-LinkGroups group_links(const Links& links, std::span<const float> albedo) {
+BlockJacobi make_block_jacobi(const FormFactorMatrix& links, std::span<const float> albedo) {
   std::vector<uint32_t> group(links.rows, kNoGroup);
-  LinkGroups groups;
+  BlockJacobi groups;
   {
-    Unions unions = join_strong(links, albedo);
+    DisjointSets unions = join_strong(links, albedo);
     groups = list_groups(unions, group);
   }
   collect_entries(links, albedo, group, groups);
@@ -198,9 +198,9 @@ LinkGroups group_links(const Links& links, std::span<const float> albedo) {
   return groups;
 }
 
-void pass_on_in_groups(const LinkGroups& groups, std::vector<double>& values) {
+void apply_block_jacobi(const BlockJacobi& groups, std::vector<double>& values) {
   parallel_for(groups.count(), kGroupsPerTask, [&](size_t begin, size_t end) {
-    std::array<double, LinkGroups::kMostMembers> before;
+    std::array<double, BlockJacobi::kMostMembers> before;
     for (size_t g = begin; g < end; ++g) {
       const std::span<const uint32_t> members = members_of(groups, g);
       const float* entry = groups.inverse.data() + groups.first_entry[g];

@@ -1,7 +1,7 @@
 // Small groups of patches that see little but each other: nodes round the bottom of a pit, where light stays
 // for hundreds of bounces. Inside a group it is followed to the end at once, by the inverse of I − W
 // diag(albedo) among its members: block Jacobi with the blocks of a nearly decomposable chain (Courtois,
-// "Decomposability", 1977), the preconditioner of LightSolver.
+// "Decomposability", 1977), the preconditioner of Orthomin.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace hemibake {
 
-struct LinkGroups {
+struct BlockJacobi {
   static constexpr uint32_t kMostMembers = 16;
 
   std::vector<uint32_t> members;       // of the groups, one after another, each ascending
@@ -28,9 +28,9 @@ struct LinkGroups {
 // most two entries of `inverse` for each row of the links. A group that loses nothing has the inverse 1.
 // Reads the links twice. links: patch × patch. albedo: one per patch, 0..1; empty: 1 everywhere. The same
 // bytes at any thread count.
-LinkGroups group_links(const Links& links, std::span<const float> albedo);
+BlockJacobi make_block_jacobi(const FormFactorMatrix& links, std::span<const float> albedo);
 
 // values of a group's members: its inverse times them; of other patches they stay.
-void pass_on_in_groups(const LinkGroups& groups, std::vector<double>& values);
+void apply_block_jacobi(const BlockJacobi& groups, std::vector<double>& values);
 
 }  // namespace hemibake

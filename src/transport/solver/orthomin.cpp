@@ -36,7 +36,7 @@ void add_scaled(double factor, const std::vector<double>& b, std::vector<double>
 
 // So that `reflect` multiplies exactly these values: it rounds what is reflected to float, which would part
 // the residual as it is counted from what it is, by more than pits that are deep allow.
-void make_exact(std::span<const float> albedo, std::vector<double>& light) {
+void round_for_product(std::span<const float> albedo, std::vector<double>& light) {
   parallel_for(light.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const double factor = albedo.empty() ? 1 : static_cast<double>(albedo[i]);
@@ -47,14 +47,14 @@ void make_exact(std::span<const float> albedo, std::vector<double>& light) {
 
 }  // namespace
 
-LightSolver::LightSolver(const Links& links, std::span<const float> albedo, std::vector<double> start,
-                         std::vector<double> residual)
+Orthomin::Orthomin(const FormFactorMatrix& links, std::span<const float> albedo, std::vector<double> start,
+                   std::vector<double> residual)
     : links_(links), albedo_(albedo), light_(std::move(start)), residual_(std::move(residual)) {}
 
-bool LightSolver::step() {
+bool Orthomin::step() {
   if (steps_ == kStepsBeforeGroups && !groups_) {
-    groups_ = group_links(links_, albedo_);
-    pass_on_in_groups(*groups_, residual_);
+    groups_ = make_block_jacobi(links_, albedo_);
+    apply_block_jacobi(*groups_, residual_);
     kept_.clear();
     oldest_ = 0;
     work_ += 2;
@@ -63,15 +63,15 @@ bool LightSolver::step() {
   if (kept_.size() == kDirectionsKept) next = std::move(kept_[oldest_]);
   const bool replaces = !next.change.empty();
   next.change = residual_;
-  make_exact(albedo_, next.change);
-  reflect(links_, albedo_, next.change, next.reduction);
+  round_for_product(albedo_, next.change);
+  apply_transport(links_, albedo_, next.change, next.reduction);
   work_ += 1;
   if (groups_ && !groups_->inverse.empty())
     work_ += static_cast<double>(groups_->inverse.size()) / static_cast<double>(links_.count());
   parallel_for(next.change.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) next.reduction[i] = next.change[i] - next.reduction[i];
   });
-  if (groups_) pass_on_in_groups(*groups_, next.reduction);
+  if (groups_) apply_block_jacobi(*groups_, next.reduction);
   for (const Direction& direction : kept_) {
     if (direction.change.empty()) continue;
     const double share = -dot(next.reduction, direction.reduction) / direction.norm_squared;
@@ -93,21 +93,21 @@ bool LightSolver::step() {
   return true;
 }
 
-double LightSolver::largest_residual() const {
+double Orthomin::largest_residual() const {
   double largest = 0;
   for (const double value : residual_) largest = std::max(largest, std::abs(value));
   return largest;
 }
 
-void reflect(const Links& links, std::span<const float> albedo, std::span<const double> light,
-             std::vector<double>& out) {
+void apply_transport(const FormFactorMatrix& links, std::span<const float> albedo,
+                     std::span<const double> light, std::vector<double>& out) {
   out.resize(links.rows);
-  if (albedo.empty()) return gather(links, light, out);
+  if (albedo.empty()) return multiply(links, light, out);
   std::vector<double> reflected(light.size());
   parallel_for(light.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) reflected[i] = static_cast<double>(albedo[i]) * light[i];
   });
-  gather(links, reflected, out);
+  multiply(links, reflected, out);
 }
 
 }  // namespace hemibake

@@ -7,27 +7,27 @@
 // need no more products than all, BiCGSTAB (Eigen's) half as many again.
 //
 // What is slow then are nodes in the bottom of pits, of which two to six see little but each other. From the
-// ninth step on their light is followed to the end inside such groups (transport/solver/block_jacobi.h): with G the
-// inverse of I − W diag(albedo) within groups, G (direct − E + W diag(albedo) E) is made small. That is a
-// third of the products on WallHeight; problems that end sooner do not pay for it. (E corrected by G instead,
-// the residual as it is, comes to a standstill.)
+// ninth step on their light is followed to the end inside such groups (transport/solver/block_jacobi.h): with
+// G the inverse of I − W diag(albedo) within groups, G (direct − E + W diag(albedo) E) is made small. That is
+// a third of the products on WallHeight; problems that end sooner do not pay for it. (E corrected by G
+// instead, the residual as it is, comes to a standstill.)
 #pragma once
 
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "transport/solver/block_jacobi.h"
 #include "transport/links/form_factors.h"
+#include "transport/solver/block_jacobi.h"
 
 namespace hemibake {
 
-class LightSolver {
+class Orthomin {
  public:
   // links: patch × patch. albedo: one per patch, 0..1; empty: 1 everywhere. start: any light. residual:
   // direct + W diag(albedo) start − start. Both references must outlive the solver.
-  LightSolver(const Links& links, std::span<const float> albedo, std::vector<double> start,
-              std::vector<double> residual);
+  Orthomin(const FormFactorMatrix& links, std::span<const float> albedo, std::vector<double> start,
+           std::vector<double> residual);
 
   // One product. False, and nothing done, where there is nothing left to do: the residual is zero, or no
   // direction reduces it.
@@ -46,18 +46,18 @@ class LightSolver {
     double norm_squared = 0;
   };
 
-  const Links& links_;
+  const FormFactorMatrix& links_;
   std::span<const float> albedo_;
   std::vector<double> light_, residual_;
   std::vector<Direction> kept_;
   size_t oldest_ = 0;
   int steps_ = 0;
   double work_ = 0;
-  std::optional<LinkGroups> groups_;
+  std::optional<BlockJacobi> groups_;
 };
 
 // out = links · diag(albedo) · light; albedo as above.
-void reflect(const Links& links, std::span<const float> albedo, std::span<const double> light,
-             std::vector<double>& out);
+void apply_transport(const FormFactorMatrix& links, std::span<const float> albedo,
+                     std::span<const double> light, std::vector<double>& out);
 
 }  // namespace hemibake

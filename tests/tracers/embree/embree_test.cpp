@@ -29,7 +29,7 @@ Row trace(const Tracer& tracer, uint32_t texel) {
 
 double row_sum(const Row& row) {
   double sum = static_cast<double>(static_cast<float>(row.direct_over_pi));
-  for (const Link& link : row.links) sum += static_cast<double>(link.weight);
+  for (const FormFactor& link : row.links) sum += static_cast<double>(link.weight);
   return sum;
 }
 
@@ -91,10 +91,10 @@ TEST(EmbreeTracer, FlatGroundIsExactlyOpen) {
 
 TEST(EmbreeTracer, RowsSumToOne) {
   const Surface surface = white_noise_surface(32, 32, 0.3);
-  for (const Patches patches : {Patches::kFacets, Patches::kTexels}) {
+  for (const PatchKind patches : {PatchKind::kFacets, PatchKind::kTexels}) {
     for (const int count : {1, 3, 100, 256}) {
       RayOptions options = rays(count);
-      options.patches = patches;
+      options.patch_kind = patches;
       const auto tracer = make_embree_tracer(surface, options);
       Row row;
       TracerCounts counts;
@@ -103,7 +103,7 @@ TEST(EmbreeTracer, RowsSumToOne) {
         EXPECT_NEAR(row_sum(row), 1, 1e-7);
         tracer->trace_patch(i, true, row, counts);
         EXPECT_NEAR(row_sum(row), 1, 1e-7);
-        for (const Link& link : row.links) ASSERT_LT(link.patch, tracer->patches().count);
+        for (const FormFactor& link : row.links) ASSERT_LT(link.patch, tracer->patch_set().count);
       }
     }
   }
@@ -115,10 +115,10 @@ TEST(EmbreeTracer, FacetsNeverSeeThemselves) {
     const auto tracer = make_embree_tracer(surface, rays(64));
     Row row;
     TracerCounts counts;
-    const PatchSet& patches = tracer->patches();
+    const PatchSet& patches = tracer->patch_set();
     for (uint32_t patch = 0; patch < patches.count; ++patch) {
       tracer->trace_patch(patch, true, row, counts);
-      for (const Link& link : row.links)
+      for (const FormFactor& link : row.links)
         EXPECT_NE(facet_node(patches, link.patch).facet, facet_node(patches, patch).facet);
     }
   }
@@ -181,9 +181,9 @@ TEST(EmbreeTracer, ExtremesStayFinite) {
   for (const double amplitude : {0.0, 1e-6, 1e3}) {
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 37}, {37, 1}, {2, 2}, {33, 17}}) {
       const Surface surface = white_noise_surface(width, height, amplitude);
-      for (const Patches patches : {Patches::kFacets, Patches::kTexels}) {
+      for (const PatchKind patches : {PatchKind::kFacets, PatchKind::kTexels}) {
         RayOptions options = rays(32);
-        options.patches = patches;
+        options.patch_kind = patches;
         const auto tracer = make_embree_tracer(surface, options);
         Row row;
         TracerCounts counts;
@@ -232,14 +232,15 @@ TEST(EmbreeTracer, FacetLightAddsUpToTheOpening) {
   TracerCounts counts;
   std::vector<double> light;
   double variance = 0;  // of the sum, at most: rays are stratified
-  for (uint32_t patch = 0; patch < tracer->patches().count; ++patch) {
+  for (uint32_t patch = 0; patch < tracer->patch_set().count; ++patch) {
     tracer->trace_patch(patch, false, row, counts);
     light.push_back(row.direct_over_pi);
-    const double share = patch_area_texels(surface, tracer->patches(), patch) / (0.5 * facet_count(surface));
+    const double share =
+        patch_area_texels(surface, tracer->patch_set(), patch) / (0.5 * facet_count(surface));
     variance += share * share * light.back() * (1 - light.back()) / 256;
   }
   // The rule over the nodes of a facet errs by up to 0.2 % on rough maps (surface/patches.h).
-  EXPECT_NEAR(sum_over_opening(surface, tracer->patches(), std::span<const double>(light)), 1,
+  EXPECT_NEAR(sum_over_opening(surface, tracer->patch_set(), std::span<const double>(light)), 1,
               0.002 + 3 * std::sqrt(variance));
 }
 

@@ -54,7 +54,7 @@ Row trace(const Tracer& tracer, uint32_t texel, TracerCounts* counts = nullptr) 
 
 double link_sum(const Row& row) {
   double sum = 0;
-  for (const Link& link : row.links) sum += static_cast<double>(link.weight);
+  for (const FormFactor& link : row.links) sum += static_cast<double>(link.weight);
   return sum;
 }
 
@@ -119,7 +119,7 @@ TEST(March, StopsAfterMaxSteps) {
     TracerCounts counts;
     const Row row = trace(*make_march_tracer(surface, options), 0, &counts);
     EXPECT_EQ(row.visible_fraction, steps == 3 ? 1 : 0);
-    EXPECT_EQ(counts.cut_short, steps == 3 ? 1U : 0U);
+    EXPECT_EQ(counts.truncated, steps == 3 ? 1U : 0U);
     EXPECT_EQ(counts.rays, 1U);
   }
 }
@@ -252,7 +252,7 @@ TEST(March, EveryMapAndAmplitudeGivesNumbers) {
             EXPECT_TRUE(row.visible_fraction >= 0 && row.visible_fraction <= 1);
             EXPECT_TRUE(row.direct_over_pi >= 0 && row.direct_over_pi <= 1.1) << row.direct_over_pi;
             EXPECT_NEAR(glm::length(row.bent_normal), 1, 1e-6);
-            for (const Link& link : row.links) {
+            for (const FormFactor& link : row.links) {
               EXPECT_LT(link.patch, surface.texel_count());
               EXPECT_TRUE(link.weight > 0 && link.weight <= 1.1f) << link.weight;
             }
@@ -288,11 +288,9 @@ TEST(March, AgreesWithEmbreeOnASmoothMap) {
   MarchOptions march;
   march.lift_percent = 0.1;
   RayOptions rays;
-  rays.patches = Patches::kTexels;
-  const Visibility marched =
-      trace_surface(*make_march_tracer(surface, march), 64, 64, Patches::kTexels, false);
-  const Visibility traced =
-      trace_surface(*make_embree_tracer(surface, rays), 64, 64, Patches::kTexels, false);
+  rays.patch_kind = PatchKind::kTexels;
+  const LightTransport marched = trace_surface(*make_march_tracer(surface, march), false);
+  const LightTransport traced = trace_surface(*make_embree_tracer(surface, rays), false);
   const auto& ao = marched.visible_fraction.values;
   const auto& direct = marched.direct_over_pi.values;
   // Less than one ray of the 256 a texel, and a quarter of one in the mean. What differs grazes slopes, and

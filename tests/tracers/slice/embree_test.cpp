@@ -1,4 +1,6 @@
 // The slice tracer against Embree on the same triangles.
+#include "tracers/embree/embree.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +10,6 @@
 #include "sampling/low_discrepancy.h"
 #include "support/maps.h"
 #include "surface/normals.h"
-#include "tracers/embree/embree.h"
 #include "tracers/slice/slice.h"
 #include "transport/bounces.h"
 
@@ -25,23 +26,23 @@ double lift_of_embree(const Surface& surface) {
   return std::max(1e-3 * std::min(1.0, range), 0x1p-21 * range);
 }
 
-Visibility with_embree(const Surface& surface, bool with_links, double max_distance_m, Patches patches) {
+LightTransport with_embree(const Surface& surface, bool with_links, double max_distance_m,
+                           PatchKind patches) {
   RayOptions options;
   options.rays = kRays;
   options.max_distance_m = max_distance_m;
-  options.patches = patches;
-  return trace_surface(*make_embree_tracer(surface, options), surface.width(), surface.height(), patches,
-                       with_links);
+  options.patch_kind = patches;
+  return trace_surface(*make_embree_tracer(surface, options), with_links);
 }
 
-Visibility with_slices(const Surface& surface, bool with_links, double max_distance_m, Patches patches) {
+LightTransport with_slices(const Surface& surface, bool with_links, double max_distance_m,
+                           PatchKind patches) {
   SliceOptions options;
   options.azimuths = kAzimuths;
   options.lift_texels = lift_of_embree(surface);
   options.max_distance_m = max_distance_m;
-  options.patches = patches;
-  return trace_surface(*make_slice_tracer(surface, options), surface.width(), surface.height(), patches,
-                       with_links);
+  options.patch_kind = patches;
+  return trace_surface(*make_slice_tracer(surface, options), with_links);
 }
 
 // N^−¾ for a low-discrepancy set with a constant of 2 per texel (measured rms: 0.45) …
@@ -50,8 +51,8 @@ const double kTexelError = 4 * std::pow(kRays, -0.75);
 constexpr double kMeanError = 1e-4;
 
 void expect_same_sky(const Surface& surface, double max_distance_m = HUGE_VAL) {
-  const Visibility rays = with_embree(surface, false, max_distance_m, Patches::kFacets);
-  const Visibility slices = with_slices(surface, false, max_distance_m, Patches::kFacets);
+  const LightTransport rays = with_embree(surface, false, max_distance_m, PatchKind::kFacets);
+  const LightTransport slices = with_slices(surface, false, max_distance_m, PatchKind::kFacets);
   EXPECT_NEAR(mean(rays.visible_fraction.values), mean(slices.visible_fraction.values), kMeanError);
   EXPECT_NEAR(mean(rays.direct_over_pi.values), mean(slices.direct_over_pi.values), kMeanError);
   EXPECT_LT(rms_difference(rays.visible_fraction.values, slices.visible_fraction.values), kTexelError / 4);
@@ -98,7 +99,7 @@ TEST(SliceAgainstEmbree, TiltedNormals) {
   expect_same_sky(surface, 0.05);
 }
 
-void expect_same_bounces(const Surface& surface, Patches patches, double max_distance_m = HUGE_VAL) {
+void expect_same_bounces(const Surface& surface, PatchKind patches, double max_distance_m = HUGE_VAL) {
   BounceOptions options;
   options.bounces = 3;
   const Bounces rays = bounce_light(with_embree(surface, true, max_distance_m, patches), options);
@@ -111,15 +112,15 @@ void expect_same_bounces(const Surface& surface, Patches patches, double max_dis
 }
 
 TEST(SliceAgainstEmbree, LightBouncedBetweenFacets) {
-  expect_same_bounces(synthetic_surface(SyntheticKind::kBricks, 48, 48, 0.15), Patches::kFacets);
+  expect_same_bounces(synthetic_surface(SyntheticKind::kBricks, 48, 48, 0.15), PatchKind::kFacets);
   expect_same_bounces(synthetic_surface(SyntheticKind::kConcrete, 40, 48, 0.3, {}, Edge::kOpen),
-                      Patches::kFacets);
-  expect_same_bounces(synthetic_surface(SyntheticKind::kNoise, 48, 48, 0.3), Patches::kFacets, 0.15);
+                      PatchKind::kFacets);
+  expect_same_bounces(synthetic_surface(SyntheticKind::kNoise, 48, 48, 0.3), PatchKind::kFacets, 0.15);
 }
 
 TEST(SliceAgainstEmbree, LightBouncedBetweenTexels) {
-  expect_same_bounces(synthetic_surface(SyntheticKind::kBricks, 48, 48, 0.15), Patches::kTexels);
-  expect_same_bounces(synthetic_surface(SyntheticKind::kNoise, 48, 48, 0.3), Patches::kTexels, 0.15);
+  expect_same_bounces(synthetic_surface(SyntheticKind::kBricks, 48, 48, 0.15), PatchKind::kTexels);
+  expect_same_bounces(synthetic_surface(SyntheticKind::kNoise, 48, 48, 0.3), PatchKind::kTexels, 0.15);
 }
 
 }  // namespace

@@ -17,17 +17,16 @@ SliceOptions azimuths(int count) {
   return options;
 }
 
-Visibility look(const Surface& surface, const SliceOptions& options, bool with_links) {
-  return trace_surface(*make_slice_tracer(surface, options), surface.width(), surface.height(),
-                       options.patches, with_links);
+LightTransport look(const Surface& surface, const SliceOptions& options, bool with_links) {
+  return trace_surface(*make_slice_tracer(surface, options), with_links);
 }
 
 // One binary serves every x86-64 machine: each set of vector instructions that this one has gives the same
 // light. Fused and plain multiply-adds round apart by some 10⁻⁷ of the heights.
 TEST(SliceSame, EveryInstructionSetSeesTheSame) {
   const Surface surface = white_noise_surface(40, 24, 0.1);
-  const Visibility best = look(surface, azimuths(16), true);
-  const auto light = [](const Visibility& seen) {
+  const LightTransport best = look(surface, azimuths(16), true);
+  const auto light = [](const LightTransport& seen) {
     BounceOptions options;
     options.bounces = 1;
     return bounce_light(seen, options).irradiance[1];
@@ -38,7 +37,7 @@ TEST(SliceSame, EveryInstructionSetSeesTheSame) {
   for (int64_t left = all; left != 0; left &= left - 1, ++targets) {
     const int64_t target = left & -left;
     hwy::SetSupportedTargetsForTest(target);
-    const Visibility seen = look(surface, azimuths(16), true);
+    const LightTransport seen = look(surface, azimuths(16), true);
     const Grid<float> seen_light = light(seen);
     double difference = 0;
     for (size_t i = 0; i < surface.texel_count(); ++i) {
@@ -63,7 +62,7 @@ TEST(SliceSame, NodesThatSeeOnePillarLinkToIt) {
   Row with, without;
   TracerCounts counts;
   int blocked = 0;
-  for (uint32_t patch = 0; patch < tracer->patches().count; patch += 5) {
+  for (uint32_t patch = 0; patch < tracer->patch_set().count; patch += 5) {
     tracer->trace_patch(patch, true, with, counts);
     tracer->trace_patch(patch, false, without, counts);
     EXPECT_NEAR(with.direct_over_pi, without.direct_over_pi, 1e-4) << patch;
@@ -77,10 +76,9 @@ TEST(SliceSame, NodesThatSeeOnePillarLinkToIt) {
 TEST(SliceSame, SeedsAreIndependent) {
   const Surface surface = white_noise_surface(48, 40, 0.1);
   const auto tracer = make_slice_tracer(surface, azimuths(16));
-  const auto look_again = [&](uint64_t seed) {
-    return trace_surface(*tracer->reseeded(seed), 48, 40, Patches::kFacets, true);
-  };
-  const Visibility truth = look(surface, azimuths(512), true), first = look_again(1), second = look_again(2);
+  const auto look_again = [&](uint64_t seed) { return trace_surface(*tracer->reseeded(seed), true); };
+  const LightTransport truth = look(surface, azimuths(512), true), first = look_again(1),
+                       second = look_again(2);
   // The correlation of two independent errors of n values is 0 ± 1/√n; packets of 16 share their azimuths.
   const auto expect_uncorrelated = [](const std::vector<float>& a, const std::vector<float>& b,
                                       const std::vector<float>& right) {
@@ -101,7 +99,7 @@ TEST(SliceSame, SeedsAreIndependent) {
 TEST(SliceSame, TilesSeeWhatTexelsSee) {
   const Surface surface = white_noise_surface(77, 35, 0.2);
   const auto tracer = make_slice_tracer(surface, azimuths(12));
-  const Visibility seen = trace_surface(*tracer, 77, 35, Patches::kFacets, false);
+  const LightTransport seen = trace_surface(*tracer, false);
   Row row;
   TracerCounts counts;
   for (uint32_t texel = 0; texel < surface.texel_count(); texel += 7) {

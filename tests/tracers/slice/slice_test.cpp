@@ -19,10 +19,10 @@
 namespace hemibake {
 namespace {
 
-SliceOptions azimuths(int count, Patches patches = Patches::kFacets) {
+SliceOptions azimuths(int count, PatchKind patches = PatchKind::kFacets) {
   SliceOptions options;
   options.azimuths = count;
-  options.patches = patches;
+  options.patch_kind = patches;
   return options;
 }
 
@@ -35,13 +35,12 @@ Row trace(const Surface& surface, uint32_t texel, const SliceOptions& options, b
 
 double row_sum(const Row& row) {
   double sum = static_cast<double>(static_cast<float>(row.direct_over_pi));
-  for (const Link& link : row.links) sum += static_cast<double>(link.weight);
+  for (const FormFactor& link : row.links) sum += static_cast<double>(link.weight);
   return sum;
 }
 
-Visibility look(const Surface& surface, const SliceOptions& options, bool with_links) {
-  return trace_surface(*make_slice_tracer(surface, options), surface.width(), surface.height(),
-                       options.patches, with_links);
+LightTransport look(const Surface& surface, const SliceOptions& options, bool with_links) {
+  return trace_surface(*make_slice_tracer(surface, options), with_links);
 }
 
 TEST(SliceTracer, FlatGroundIsExactlyOpen) {
@@ -100,15 +99,15 @@ TEST(SliceTracer, GrooveWallMeans) {
     const double psi = degrees * kPi / 180;
     const Surface surface = synthetic_surface(SyntheticKind::kGroove, 128, 16, {}, psi);
     const auto tracer = make_slice_tracer(surface, azimuths(128));
-    const Visibility seen = trace_surface(*tracer, 128, 16, Patches::kFacets, true);
+    const LightTransport seen = trace_surface(*tracer, true);
     std::vector<double> light(seen.patch_direct_over_pi.begin(), seen.patch_direct_over_pi.end()),
         next(light.size());
     const std::vector<double> expected = groove_wall_means(psi, 4);
     for (const double mean_light : expected) {
-      EXPECT_NEAR(area_mean(surface, tracer->patches(), std::span<const double>(light)), mean_light,
+      EXPECT_NEAR(area_mean(surface, tracer->patch_set(), std::span<const double>(light)), mean_light,
                   2e-3 * std::sqrt(mean_light))
           << degrees;
-      gather(seen.patches, light, next);
+      multiply(seen.patch_form_factors, light, next);
       light.swap(next);
     }
   }
@@ -131,15 +130,15 @@ TEST(SliceTracer, BottomOfABowl) {
 TEST(SliceTracer, RowsSumToOneAndNameRealPatches) {
   for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
     const Surface surface = white_noise_surface(37, 21, 0.3, edge);
-    for (const Patches patches : {Patches::kFacets, Patches::kTexels}) {
+    for (const PatchKind patches : {PatchKind::kFacets, PatchKind::kTexels}) {
       for (const int count : {1, 3, 32}) {
         const auto tracer = make_slice_tracer(surface, azimuths(count, patches));
         Row row;
         TracerCounts counts;
         const auto expect_whole = [&] {
           EXPECT_NEAR(row_sum(row), 1, 1e-7);
-          for (const Link& link : row.links) {
-            ASSERT_LT(link.patch, tracer->patches().count);
+          for (const FormFactor& link : row.links) {
+            ASSERT_LT(link.patch, tracer->patch_set().count);
             ASSERT_GE(link.weight, 0);
           }
         };
@@ -147,7 +146,7 @@ TEST(SliceTracer, RowsSumToOneAndNameRealPatches) {
           tracer->trace_texel(i, true, row, counts);
           expect_whole();
         }
-        for (uint32_t i = 0; i < tracer->patches().count; ++i) {
+        for (uint32_t i = 0; i < tracer->patch_set().count; ++i) {
           tracer->trace_patch(i, true, row, counts);
           expect_whole();
         }
@@ -162,10 +161,10 @@ TEST(SliceTracer, FacetsNeverSeeThemselves) {
     const auto tracer = make_slice_tracer(surface, azimuths(64));
     Row row;
     TracerCounts counts;
-    const PatchSet& patches = tracer->patches();
+    const PatchSet& patches = tracer->patch_set();
     for (uint32_t patch = 0; patch < patches.count; ++patch) {
       tracer->trace_patch(patch, true, row, counts);
-      for (const Link& link : row.links)
+      for (const FormFactor& link : row.links)
         EXPECT_NE(facet_node(patches, link.patch).facet, facet_node(patches, patch).facet);
     }
   }
@@ -181,7 +180,8 @@ TEST(SliceTracer, NoSeam) {
       shifted.normals((x + 19) % 40, (y + 23) % 40) = surface.normals(x, y);
     }
   // 512 azimuths leave no choice of turns: packets differ, the azimuths do not.
-  const Visibility seen = look(surface, azimuths(512), false), other = look(shifted, azimuths(512), false);
+  const LightTransport seen = look(surface, azimuths(512), false),
+                       other = look(shifted, azimuths(512), false);
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x) {
       EXPECT_NEAR(seen.visible_fraction(x, y), other.visible_fraction((x + 19) % 40, (y + 23) % 40), 1e-6);
@@ -193,9 +193,9 @@ TEST(SliceTracer, SameBytesFromAnyNumberOfThreadsAndOneByOne) {
   const Surface surface = white_noise_surface(50, 45, 0.2);
   const SliceOptions options = azimuths(12);
   set_thread_count(1);
-  const Visibility one = look(surface, options, true);
+  const LightTransport one = look(surface, options, true);
   set_thread_count(2);
-  const Visibility two = look(surface, options, true);
+  const LightTransport two = look(surface, options, true);
   set_thread_count(0);
   EXPECT_EQ(one.visible_fraction.values, two.visible_fraction.values);
   EXPECT_EQ(one.direct_over_pi.values, two.direct_over_pi.values);
@@ -207,21 +207,21 @@ TEST(SliceTracer, SameBytesFromAnyNumberOfThreadsAndOneByOne) {
   for (size_t b = 0; b < one.patches.blocks.size(); ++b) {
     EXPECT_EQ(one.patches.blocks[b].packed, two.patches.blocks[b].packed);
   }
-  for (uint32_t facet = 0; facet < tracer->patches().count; facet += 13) {
+  for (uint32_t facet = 0; facet < tracer->patch_set().count; facet += 13) {
     tracer->trace_patch(facet, true, row, counts);
-    unpack_block(one.patches.blocks[facet / Links::kRowsPerBlock], stored);
+    unpack_block(one.patches.blocks[facet / FormFactorMatrix::kRowsPerBlock], stored);
     float sum = 0;
-    for (const Link& link : row.links) sum += link.weight;
-    // Packing takes less than a quantum of a weight (transport/links/form_factors.h), and the links that this leaves
-    // nothing of.
+    for (const FormFactor& link : row.links) sum += link.weight;
+    // Packing takes less than a quantum of a weight (transport/links/form_factors.h), and the links that this
+    // leaves nothing of.
     const float quantum = 1.0001f * sum / (12 * static_cast<float>(row.links.size()));
-    uint32_t at = stored.row_begin[facet % Links::kRowsPerBlock];
-    for (const Link& link : row.links) {
-      const bool kept =
-          at < stored.row_begin[facet % Links::kRowsPerBlock + 1] && stored.patches[at] == link.patch;
+    uint32_t at = stored.row_begin[facet % FormFactorMatrix::kRowsPerBlock];
+    for (const FormFactor& link : row.links) {
+      const bool kept = at < stored.row_begin[facet % FormFactorMatrix::kRowsPerBlock + 1] &&
+                        stored.patches[at] == link.patch;
       ASSERT_NEAR(link.weight, kept ? stored.weights[at++] : 0, quantum);
     }
-    EXPECT_EQ(at, stored.row_begin[facet % Links::kRowsPerBlock + 1]);
+    EXPECT_EQ(at, stored.row_begin[facet % FormFactorMatrix::kRowsPerBlock + 1]);
   }
 }
 
@@ -230,7 +230,8 @@ TEST(SliceTracer, SameBytesFromAnyNumberOfThreadsAndOneByOne) {
 TEST(SliceTracer, LinksDoNotChangeTheSky) {
   for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
     const Surface surface = white_noise_surface(33, 30, 0.1, edge);
-    const Visibility with = look(surface, azimuths(16), true), without = look(surface, azimuths(16), false);
+    const LightTransport with = look(surface, azimuths(16), true),
+                         without = look(surface, azimuths(16), false);
     for (size_t i = 0; i < surface.texel_count(); ++i) {
       EXPECT_NEAR(with.visible_fraction[i], without.visible_fraction[i], 1e-4);
       EXPECT_NEAR(with.direct_over_pi[i], without.direct_over_pi[i], 1e-4);
@@ -248,15 +249,15 @@ TEST(SliceTracer, NormalsFromAMapTiltTheHemisphere) {
   EXPECT_NEAR(row.visible_fraction, 1 - tilt / kPi, 2e-5);
   EXPECT_NEAR(row.direct_over_pi, (1 + std::cos(tilt)) / 2, 2e-5);
   EXPECT_GT(row.links.size(), 0);
-  const PatchSet patches = make_patches(surface, Patches::kFacets);
-  for (const Link& link : row.links) {
+  const PatchSet patches = make_patches(surface, PatchKind::kFacets);
+  for (const FormFactor& link : row.links) {
     bool touches = false;
     const uint32_t facet = facet_node(patches, link.patch).facet;
     for (const glm::ivec2& corner : facet_corners(surface, facet).texel)
       touches = touches || (corner.x % 8 == 1 && corner.y % 8 == 1);
     EXPECT_TRUE(touches) << link.patch;
   }
-  const Row texels = trace(surface, 9, azimuths(64, Patches::kTexels));
+  const Row texels = trace(surface, 9, azimuths(64, PatchKind::kTexels));
   ASSERT_EQ(texels.links.size(), 1u);
   EXPECT_EQ(texels.links[0].patch, 9u);
 }
@@ -291,11 +292,11 @@ TEST(SliceTracer, ExtremesStayFinite) {
       for (const auto& [width, height] : {std::pair{1, 1}, {1, 37}, {37, 1}, {2, 2}, {33, 17}}) {
         if (edge == Edge::kOpen && (width < 2 || height < 2)) continue;
         const Surface surface = white_noise_surface(width, height, amplitude, edge);
-        for (const Patches patches : {Patches::kFacets, Patches::kTexels}) {
+        for (const PatchKind patches : {PatchKind::kFacets, PatchKind::kTexels}) {
           const auto tracer = make_slice_tracer(surface, azimuths(16, patches));
           Row row;
           TracerCounts counts;
-          for (uint32_t i = 0; i < std::min(surface.texel_count(), tracer->patches().count); ++i) {
+          for (uint32_t i = 0; i < std::min(surface.texel_count(), tracer->patch_set().count); ++i) {
             for (const bool with_links : {false, true}) {
               tracer->trace_texel(i, with_links, row, counts);
               ASSERT_GE(row.visible_fraction, 0);
@@ -320,7 +321,7 @@ TEST(SliceTracer, AzimuthsNearGridLinesEnd) {
   for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
     const Surface surface = white_noise_surface(64, 64, 0.1, edge);
     for (const int count : {1, 2, 4, 6, 8, 10, 512}) {
-      const Visibility seen = look(surface, azimuths(count), true);
+      const LightTransport seen = look(surface, azimuths(count), true);
       for (const float ao : seen.visible_fraction.values) ASSERT_TRUE(ao >= 0 && ao <= 1);
     }
   }
@@ -353,13 +354,13 @@ TEST(SliceTracer, FacetLightAddsUpToTheOpening) {
   Row row;
   TracerCounts counts;
   std::vector<double> light;
-  for (uint32_t patch = 0; patch < tracer->patches().count; ++patch) {
+  for (uint32_t patch = 0; patch < tracer->patch_set().count; ++patch) {
     tracer->trace_patch(patch, false, row, counts);
     light.push_back(row.direct_over_pi);
   }
   // The rule over the nodes misses 0.117 % of the light along the folds of this map, whose slopes turn by 5°
   // a texel; 64 azimuths leave 0.004 % rms.
-  EXPECT_NEAR(sum_over_opening(surface, tracer->patches(), std::span<const double>(light)), 1, 1.5e-3);
+  EXPECT_NEAR(sum_over_opening(surface, tracer->patch_set(), std::span<const double>(light)), 1, 1.5e-3);
 }
 
 }  // namespace

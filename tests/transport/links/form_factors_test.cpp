@@ -21,19 +21,20 @@ namespace {
 using testing::HasSubstr;
 
 // Row i links to i+1 with ¼ and to the row before the last with ½.
-Links ring(uint32_t rows) {
-  Links links = make_links(rows, rows + 1);
+FormFactorMatrix ring(uint32_t rows) {
+  FormFactorMatrix links = make_form_factors(rows, rows + 1);
   for (uint32_t i = 0; i < rows; ++i) {
     const uint32_t next = (i + 1) % rows;
-    append_row(links.blocks[i / Links::kRowsPerBlock], std::vector<Link>{{next, 0.25f}, {rows, 0.5f}});
+    append_row(links.blocks[i / FormFactorMatrix::kRowsPerBlock],
+               std::vector<FormFactor>{{next, 0.25f}, {rows, 0.5f}});
   }
   finish_blocks(links);
   return links;
 }
 
 // Up to 40 links, neighbours and far ones, weights over twelve orders of magnitude.
-std::vector<Link> random_row(uint32_t columns, std::mt19937& random) {
-  std::vector<Link> row;
+std::vector<FormFactor> random_row(uint32_t columns, std::mt19937& random) {
+  std::vector<FormFactor> row;
   const uint32_t links = random() % 41, reach = random() % 3 == 0 ? 2 : columns / 20 + 1;
   uint32_t patch = random() % columns;
   for (uint32_t i = 0; i < links && patch < columns; ++i) {
@@ -44,16 +45,17 @@ std::vector<Link> random_row(uint32_t columns, std::mt19937& random) {
 }
 
 // One row among others, far into a matrix of `columns`, unpacked again.
-std::vector<Link> pack_and_unpack(const std::vector<Link>& row, uint32_t columns, uint32_t rows = 3) {
-  Links links = make_links(rows, columns);
+std::vector<FormFactor> pack_and_unpack(const std::vector<FormFactor>& row, uint32_t columns,
+                                        uint32_t rows = 3) {
+  FormFactorMatrix links = make_form_factors(rows, columns);
   for (uint32_t i = 0; i < rows; ++i)
-    append_row(links.blocks[i / Links::kRowsPerBlock],
-               i == rows - 2 ? row : std::vector<Link>{{columns - 1, 0.5f}});
+    append_row(links.blocks[i / FormFactorMatrix::kRowsPerBlock],
+               i == rows - 2 ? row : std::vector<FormFactor>{{columns - 1, 0.5f}});
   finish_blocks(links);
   BlockRows stored;
   unpack_block(links.blocks.back(), stored);
-  const uint32_t at = (rows - 2) % Links::kRowsPerBlock;
-  std::vector<Link> unpacked;
+  const uint32_t at = (rows - 2) % FormFactorMatrix::kRowsPerBlock;
+  std::vector<FormFactor> unpacked;
   for (uint32_t k = stored.row_begin[at]; k < stored.row_begin[at + 1]; ++k)
     unpacked.push_back({stored.patches[k], stored.weights[k]});
   // Its neighbours must not have suffered.
@@ -67,16 +69,16 @@ std::vector<Link> pack_and_unpack(const std::vector<Link>& row, uint32_t columns
 double half_bit_of_sums(double sum) { return std::exp2(std::ceil(std::log2(std::max(sum, 0.5))) - 25); }
 
 // Sum kept, no weight off by a quantum, order and patches kept.
-void expect_packed_well(const std::vector<Link>& row, const std::vector<Link>& packed) {
+void expect_packed_well(const std::vector<FormFactor>& row, const std::vector<FormFactor>& packed) {
   double sum = 0, packed_sum = 0, positive = 0;
-  for (const Link& link : row) {
+  for (const FormFactor& link : row) {
     sum += static_cast<double>(link.weight);
     positive += link.weight > 0;
   }
   // The quantum is at most a twelfth of the mean weight (see links.h), but for the rounding of the sum.
   const double quantum = sum / (12 * positive) * (1 + 1e-6) + half_bit_of_sums(sum);
   size_t at = 0;
-  for (const Link& link : row) {
+  for (const FormFactor& link : row) {
     const bool kept = at < packed.size() && packed[at].patch == link.patch;
     const double weight = kept ? static_cast<double>(packed[at++].weight) : 0;
     ASSERT_NEAR(weight, static_cast<double>(link.weight), quantum) << link.patch;
@@ -87,46 +89,47 @@ void expect_packed_well(const std::vector<Link>& row, const std::vector<Link>& p
   EXPECT_NEAR(packed_sum, sum, half_bit_of_sums(sum) + sum * 6e-8);
 }
 
-TEST(Links, GatherIsTheMatrixProduct) {
-  const uint32_t rows = 3 * Links::kRowsPerBlock + 17;
-  const Links links = ring(rows);
+TEST(FormFactorMatrix, GatherIsTheMatrixProduct) {
+  const uint32_t rows = 3 * FormFactorMatrix::kRowsPerBlock + 17;
+  const FormFactorMatrix links = ring(rows);
   EXPECT_EQ(links.count(), 2u * rows);
   std::vector<double> values(rows + 1), out(rows);
   for (uint32_t i = 0; i <= rows; ++i) values[i] = i + 1;
-  gather(links, values, out);
+  multiply(links, values, out);
   // ½ is twice ¼, and the values are whole numbers: nothing is rounded.
   for (uint32_t i = 0; i < rows; ++i) ASSERT_EQ(out[i], 0.25 * ((i + 1) % rows + 1) + 0.5 * (rows + 1));
   for (const double sum : row_sums(links)) ASSERT_EQ(sum, 0.75);
 }
 
 // The same numbers whatever the vectors: the product against the rows as unpacked.
-TEST(Links, GatherAgreesWithTheUnpackedRows) {
+TEST(FormFactorMatrix, GatherAgreesWithTheUnpackedRows) {
   std::mt19937 random(5);
   for (const uint32_t columns : {1u, 7u, 8u, 1000u, 3000000u}) {
-    Links links = make_links(2100, columns);
+    FormFactorMatrix links = make_form_factors(2100, columns);
     for (uint32_t i = 0; i < links.rows; ++i)
-      append_row(links.blocks[i / Links::kRowsPerBlock], random_row(columns, random));
+      append_row(links.blocks[i / FormFactorMatrix::kRowsPerBlock], random_row(columns, random));
     finish_blocks(links);
     std::vector<double> values(columns), out(links.rows);
     for (double& value : values) value = static_cast<double>(random() % 1000);
-    gather(links, values, out);
+    multiply(links, values, out);
     // Products are exact in double and added in the order of the links.
     const int64_t all = hwy::SupportedTargets();
     for (int64_t left = all; left != 0; left &= left - 1) {
       hwy::SetSupportedTargetsForTest(left & -left);
       std::vector<double> again(links.rows);
-      gather(links, values, again);
+      multiply(links, values, again);
       EXPECT_EQ(again, out) << hwy::TargetName(left & -left);
     }
     hwy::SetSupportedTargetsForTest(0);
     const std::vector<double> sums = row_sums(links);
     BlockRows rows;
     for (uint32_t i = 0; i < links.rows; ++i) {
-      if (i % Links::kRowsPerBlock == 0) unpack_block(links.blocks[i / Links::kRowsPerBlock], rows);
+      if (i % FormFactorMatrix::kRowsPerBlock == 0)
+        unpack_block(links.blocks[i / FormFactorMatrix::kRowsPerBlock], rows);
       double product = 0, sum = 0;
-      for (uint32_t k = rows.row_begin[i % Links::kRowsPerBlock];
-           k < rows.row_begin[i % Links::kRowsPerBlock + 1]; ++k) {
-        product += static_cast<double>(rows.weights[k]) * values[rows.patches[k]];
+      for (uint32_t k = rows.row_begin[i % FormFactorMatrix::kRowsPerBlock];
+           k < rows.row_begin[i % FormFactorMatrix::kRowsPerBlock + 1]; ++k) {
+        product += static_cast<double>(rows.weights[k]) * values[rows.columns[k]];
         sum += static_cast<double>(rows.weights[k]);
       }
       // Unpacked weights are floats.
@@ -136,44 +139,44 @@ TEST(Links, GatherAgreesWithTheUnpackedRows) {
   }
 }
 
-TEST(Links, PackingKeepsTheSumAndMissesNoWeightByAQuantum) {
+TEST(FormFactorMatrix, PackingKeepsTheSumAndMissesNoWeightByAQuantum) {
   std::mt19937 random(1);
   for (const uint32_t columns : {1u, 2u, 9u, 300u, 70000u, 100000000u, 2147483648u})
     for (int i = 0; i < 50; ++i) {
-      const std::vector<Link> row = random_row(columns, random);
+      const std::vector<FormFactor> row = random_row(columns, random);
       expect_packed_well(row, pack_and_unpack(row, columns));
     }
 }
 
-TEST(Links, ExtremeRows) {
+TEST(FormFactorMatrix, ExtremeRows) {
   constexpr uint32_t kLast = (1u << 31) - 1;
-  const std::vector<std::vector<Link>> rows = {
+  const std::vector<std::vector<FormFactor>> rows = {
       {{5, 2.0f}},                                   // the march's published weights
       {{0, 1e-30f}, {kLast, 1e-30f}},                // next to nothing, from end to end
       {{0, 1.0f}, {1, 1e-9f}, {9, 1e-9f}},           // links far below the quantum
       {{3, 0.1f}, {4, 0.1f}, {5, 0.1f}, {6, 0.1f}},  // ties
       {{1u << 24, 0.25f}, {(1u << 24) + 1, 0.5f}, {kLast, 0.125f}},
       {{kLast, 1.0f}}};
-  for (const std::vector<Link>& row : rows) expect_packed_well(row, pack_and_unpack(row, 1u << 31));
+  for (const std::vector<FormFactor>& row : rows) expect_packed_well(row, pack_and_unpack(row, 1u << 31));
   // Many that round to nothing by themselves keep their sum together.
-  std::vector<Link> dust{{0, 1.0f}};
+  std::vector<FormFactor> dust{{0, 1.0f}};
   for (uint32_t i = 1; i < 5000; ++i) dust.push_back({3 * i, 4e-6f});
   expect_packed_well(dust, pack_and_unpack(dust, 20000));
   // A whole row of all columns.
-  std::vector<Link> full(20000);
+  std::vector<FormFactor> full(20000);
   for (uint32_t i = 0; i < full.size(); ++i) full[i] = {i, 1.0f / static_cast<float>(1 + i)};
   expect_packed_well(full, pack_and_unpack(full, 20000));
   // A matrix far from square, and its last rows.
-  const std::vector<Link> steps{{0, 0.25f}, {2000000000, 0.5f}};
+  const std::vector<FormFactor> steps{{0, 0.25f}, {2000000000, 0.5f}};
   expect_packed_well(steps, pack_and_unpack(steps, 1u << 31, 5000));
   expect_packed_well({{0, 1.0f}}, pack_and_unpack({{0, 1.0f}}, 1, 5000));
 }
 
 // Every length of step and every multiple, at every share of a code that steps and multiples get.
-TEST(Links, StepsAndMultiplesStayExact) {
+TEST(FormFactorMatrix, StepsAndMultiplesStayExact) {
   for (const uint32_t most_multiple : {1u, 3u, 8u, 40u, 127u})
     for (const uint32_t usual_step : {1u, 200u, 5000u, 300000u}) {
-      std::vector<Link> row;
+      std::vector<FormFactor> row;
       std::vector<uint32_t> multiples;
       uint32_t patch = 0;
       const auto add = [&](uint32_t step) {
@@ -185,7 +188,7 @@ TEST(Links, StepsAndMultiplesStayExact) {
         for (const uint32_t step : {(1u << power) - 1, 1u << power, (1u << power) + 1})
           if (step > 0) add(step);
       for (int i = 0; i < 200; ++i) add(usual_step);
-      const std::vector<Link> packed = pack_and_unpack(row, 1u << 31);
+      const std::vector<FormFactor> packed = pack_and_unpack(row, 1u << 31);
       ASSERT_EQ(packed.size(), row.size());
       for (size_t i = 0; i < row.size(); ++i) {
         ASSERT_EQ(packed[i].patch, row[i].patch);
@@ -195,16 +198,16 @@ TEST(Links, StepsAndMultiplesStayExact) {
 }
 
 // Eighths of hits that weigh alike, one of them with what rounding left of the row.
-TEST(Links, HitsThatWeighAlikeStayWhole) {
+TEST(FormFactorMatrix, HitsThatWeighAlikeStayWhole) {
   for (const double hits : {5.0, 37.0, 256.0, 4096.0}) {
-    std::vector<Link> row;
+    std::vector<FormFactor> row;
     std::vector<double> eighths;
     for (uint32_t i = 0; i < 12; ++i) {
       eighths.push_back(i % 3 == 0 ? 1 + i % 8 : 8 * (1 + i % 4));
       row.push_back({1 + 77 * i * i, static_cast<float>(eighths.back() / (8 * hits))});
     }
     row[7].weight += 6e-8f;
-    const std::vector<Link> packed = pack_and_unpack(row, 20000);
+    const std::vector<FormFactor> packed = pack_and_unpack(row, 20000);
     ASSERT_EQ(packed.size(), row.size());
     const double quantum = static_cast<double>(packed[0].weight) / eighths[0];
     for (size_t i = 0; i < row.size(); ++i)
@@ -214,67 +217,68 @@ TEST(Links, HitsThatWeighAlikeStayWhole) {
 }
 
 // Sums that are multiples of their last bit, up to 1 and to 2 itself.
-TEST(Links, SumsAreExact) {
+TEST(FormFactorMatrix, SumsAreExact) {
   for (const double scale : {1.0, 2.0, 0x1p-40}) {
-    Links links = make_links(5, 100);
+    FormFactorMatrix links = make_form_factors(5, 100);
     const std::vector<double> sums{scale, scale * 0x1p-24, 0, scale * 0.75, scale * (1 - 0x1p-24)};
     for (const double sum : sums)
-      append_row(links.blocks[0],
-                 std::vector<Link>{{7, static_cast<float>(sum / 2)}, {8, static_cast<float>(sum - sum / 2)}});
+      append_row(links.blocks[0], std::vector<FormFactor>{{7, static_cast<float>(sum / 2)},
+                                                          {8, static_cast<float>(sum - sum / 2)}});
     finish_blocks(links);
     EXPECT_EQ(row_sums(links), sums);
     std::vector<double> out(5);
-    gather(links, std::vector<double>(100, 1), out);
+    multiply(links, std::vector<double>(100, 1), out);
     EXPECT_EQ(out, sums);
   }
 }
 
 // What merging leaves of a row that is sky but for rounding.
-TEST(Links, RowsWithoutASumStoreNothing) {
+TEST(FormFactorMatrix, RowsWithoutASumStoreNothing) {
   EXPECT_TRUE(pack_and_unpack({{7, -1e-8f}}, 100).empty());
   EXPECT_TRUE(pack_and_unpack({{7, 0.0f}, {9, 0.0f}}, 100).empty());
   expect_packed_well({{9, 0.5f}}, pack_and_unpack({{7, -1e-9f}, {9, 0.5f}}, 100));
 }
 
 // In a deep pit: what little leads out of it counts.
-TEST(Links, SmallLinksBesideAVeryLargeOneStay) {
-  const std::vector<Link> row{{1, 0.9931f}, {2, 0.0011f}, {5, 0.0017f}};
-  const std::vector<Link> packed = pack_and_unpack(row, 100);
+TEST(FormFactorMatrix, SmallLinksBesideAVeryLargeOneStay) {
+  const std::vector<FormFactor> row{{1, 0.9931f}, {2, 0.0011f}, {5, 0.0017f}};
+  const std::vector<FormFactor> packed = pack_and_unpack(row, 100);
   ASSERT_EQ(packed.size(), row.size());
   // A quantum is less than 1/4096 of their sum.
   for (size_t i = 0; i < row.size(); ++i) EXPECT_NEAR(packed[i].weight, row[i].weight, 1.0f / 4096);
 }
 
-TEST(Links, WhatIsNoRowIsABug) {
-  Links links = make_links(5, 100);
-  const auto append = [&](const std::vector<Link>& row) { append_row(links.blocks[0], row); };
+TEST(FormFactorMatrix, WhatIsNoRowIsABug) {
+  FormFactorMatrix links = make_form_factors(5, 100);
+  const auto append = [&](const std::vector<FormFactor>& row) { append_row(links.blocks[0], row); };
   EXPECT_THROW(append({{1, std::nanf("")}}), std::logic_error);
   EXPECT_THROW(append({{1, INFINITY}}), std::logic_error);
   EXPECT_THROW(append({{2, 0.5f}, {1, 0.25f}}), std::logic_error);
   EXPECT_THROW(append({{2, 0.5f}, {2, 0.25f}}), std::logic_error);
 }
 
-TEST(Links, SpilledBlocksReadAsThoseInMemory) {
+TEST(FormFactorMatrix, SpilledBlocksReadAsThoseInMemory) {
   const TemporaryFolder folder;
   std::mt19937 random(9);
-  Links kept = make_links(3000, 50000);
-  Links spilled = make_links(3000, 50000, std::make_shared<SpillFile>(folder / ""));
+  FormFactorMatrix kept = make_form_factors(3000, 50000);
+  FormFactorMatrix spilled = make_form_factors(3000, 50000, std::make_shared<SpillFile>(folder / ""));
   EXPECT_EQ(folder.count(), 0u);  // it has no name
   for (uint32_t i = 0; i < kept.rows; ++i) {
-    const std::vector<Link> row = random_row(kept.columns, random);
-    for (Links* links : {&kept, &spilled}) append_row(links->blocks[i / Links::kRowsPerBlock], row);
+    const std::vector<FormFactor> row = random_row(kept.columns, random);
+    for (FormFactorMatrix* links : {&kept, &spilled})
+      append_row(links->blocks[i / FormFactorMatrix::kRowsPerBlock], row);
   }
   for (size_t block = kept.blocks.size(); block-- > 0;)
-    for (Links* links : {&kept, &spilled}) finish_block(*links, block);
+    for (FormFactorMatrix* links : {&kept, &spilled}) finish_block(*links, block);
   EXPECT_EQ(spilled.count(), kept.count());
   EXPECT_EQ(spilled.stored_bytes(), kept.stored_bytes());
   EXPECT_EQ(spilled.blocks[0].packed.capacity(), 0u);
   EXPECT_EQ(row_sums(spilled), row_sums(kept));
   std::vector<double> values(kept.columns), from_kept(kept.rows), from_spilled(kept.rows);
   for (double& value : values) value = static_cast<double>(random() % 1000);
-  gather(kept, values, from_kept);
+  multiply(kept, values, from_kept);
   for (int repeat = 0; repeat < 2; ++repeat) {
-    gather(spilled, values, from_spilled);
+    multiply(spilled, values, from_spilled);
     EXPECT_EQ(from_spilled, from_kept);
   }
 }
@@ -287,36 +291,37 @@ size_t mapped_file_bytes() {
   return of_files * static_cast<size_t>(sysconf(_SC_PAGE_SIZE));
 }
 
-TEST(Links, SpilledBlocksDoNotStayInMemory) {
+TEST(FormFactorMatrix, SpilledBlocksDoNotStayInMemory) {
   const TemporaryFolder folder;
   std::mt19937 random(4);
-  Links links = make_links(40000, 40000, std::make_shared<SpillFile>(folder / ""));
+  FormFactorMatrix links = make_form_factors(40000, 40000, std::make_shared<SpillFile>(folder / ""));
   for (uint32_t i = 0; i < links.rows; ++i)
-    append_row(links.blocks[i / Links::kRowsPerBlock], random_row(links.columns, random));
+    append_row(links.blocks[i / FormFactorMatrix::kRowsPerBlock], random_row(links.columns, random));
   finish_blocks(links);
   const std::vector<double> values(links.columns, 1);
   std::vector<double> out(links.rows);
   // The program's own pages are files too: all that runs below has run once on links that lie in memory.
-  Links warm = make_links(links.rows, links.columns);
+  FormFactorMatrix warm = make_form_factors(links.rows, links.columns);
   for (uint32_t i = 0; i < warm.rows; ++i)
-    append_row(warm.blocks[i / Links::kRowsPerBlock], std::vector<Link>{{i, 1.0f}});
+    append_row(warm.blocks[i / FormFactorMatrix::kRowsPerBlock], std::vector<FormFactor>{{i, 1.0f}});
   finish_blocks(warm);
-  gather(warm, values, out);
+  multiply(warm, values, out);
   row_sums(warm);
   const size_t before = mapped_file_bytes();
-  gather(links, values, out);
+  multiply(links, values, out);
   row_sums(links);
   // At the end of a pass some threads hold 64 KiB on either side of their last block.
   EXPECT_LT(mapped_file_bytes(), before + links.stored_bytes() / 4);
 }
 
-TEST(Links, NoRoomToSpillIsOneLine) {
+TEST(FormFactorMatrix, NoRoomToSpillIsOneLine) {
   EXPECT_THAT(error_of<InputError>([] { SpillFile("/nowhere/at/all"); }),
               HasSubstr("/nowhere/at/all: could not make a temporary file for links: No such file"));
   const SmallDisk disk;
   if (!disk.mounted()) GTEST_SKIP() << "may not mount a disk";
-  Links links = make_links(Links::kRowsPerBlock, 10000, std::make_shared<SpillFile>(disk / ""));
-  std::vector<Link> row(10000);
+  FormFactorMatrix links =
+      make_form_factors(FormFactorMatrix::kRowsPerBlock, 10000, std::make_shared<SpillFile>(disk / ""));
+  std::vector<FormFactor> row(10000);
   for (uint32_t i = 0; i < row.size(); ++i) row[i] = {i, 0.5f};
   for (uint32_t i = 0; i < links.rows; ++i) append_row(links.blocks[0], row);
   EXPECT_THAT(error_of<InputError>([&] { finish_block(links, 0); }),
@@ -325,46 +330,46 @@ TEST(Links, NoRoomToSpillIsOneLine) {
 }
 
 // Rows as a rough map has them: runs of neighbours on many rows of the map.
-TEST(Links, ThreeAndAHalfBytesEach) {
+TEST(FormFactorMatrix, ThreeAndAHalfBytesEach) {
   constexpr uint32_t kMapRow = 720, kRows = 2048;
   std::mt19937 random(3);
-  Links links = make_links(kRows, kMapRow * 360);
+  FormFactorMatrix links = make_form_factors(kRows, kMapRow * 360);
   for (uint32_t i = 0; i < kRows; ++i) {
-    std::vector<Link> row;
+    std::vector<FormFactor> row;
     for (uint32_t patch = 1000; patch < 21000; patch += 2 + random() % 10 + (random() % 4 == 0) * kMapRow)
       for (uint32_t run = 1 + random() % 4; run > 0; --run)
         row.push_back({patch++, static_cast<float>(1 + random() % 1000)});
-    append_row(links.blocks[i / Links::kRowsPerBlock], row);
+    append_row(links.blocks[i / FormFactorMatrix::kRowsPerBlock], row);
   }
   finish_blocks(links);
   EXPECT_LT(static_cast<double>(links.stored_bytes()) / static_cast<double>(links.count()), 3.5);
 }
 
-TEST(Links, WrongLengthsAreABug) {
-  const Links links = ring(8);
+TEST(FormFactorMatrix, WrongLengthsAreABug) {
+  const FormFactorMatrix links = ring(8);
   std::vector<double> values(7), out(8);
-  EXPECT_THROW(gather(links, values, out), std::logic_error);
+  EXPECT_THROW(multiply(links, values, out), std::logic_error);
 }
 
 // Of a wide plain hardly a row has links.
-TEST(Links, EmptyRowsTakeNoMemory) {
-  Links links = make_links(Links::kRowsPerBlock, 9);
-  for (uint32_t i = 0; i < Links::kRowsPerBlock; ++i)
-    append_row(links.blocks[0], i == 77 ? std::vector<Link>{{8, 0.5f}} : std::vector<Link>{});
+TEST(FormFactorMatrix, EmptyRowsTakeNoMemory) {
+  FormFactorMatrix links = make_form_factors(FormFactorMatrix::kRowsPerBlock, 9);
+  for (uint32_t i = 0; i < FormFactorMatrix::kRowsPerBlock; ++i)
+    append_row(links.blocks[0], i == 77 ? std::vector<FormFactor>{{8, 0.5f}} : std::vector<FormFactor>{});
   finish_blocks(links);
-  EXPECT_LT(links.stored_bytes(), sizeof(LinkBlock) + LinkBlock::kPadding + 16);
-  std::vector<double> out(Links::kRowsPerBlock, NAN);
-  gather(links, std::vector<double>(9, 1.0), out);
-  for (uint32_t i = 0; i < Links::kRowsPerBlock; ++i) EXPECT_EQ(out[i], i == 77 ? 0.5 : 0) << i;
+  EXPECT_LT(links.stored_bytes(), sizeof(FormFactorBlock) + FormFactorBlock::kPadding + 16);
+  std::vector<double> out(FormFactorMatrix::kRowsPerBlock, NAN);
+  multiply(links, std::vector<double>(9, 1.0), out);
+  for (uint32_t i = 0; i < FormFactorMatrix::kRowsPerBlock; ++i) EXPECT_EQ(out[i], i == 77 ? 0.5 : 0) << i;
 }
 
-TEST(Links, EmptyRowsAreFine) {
-  Links links = make_links(2, 2);
+TEST(FormFactorMatrix, EmptyRowsAreFine) {
+  FormFactorMatrix links = make_form_factors(2, 2);
   append_row(links.blocks[0], {});
   append_row(links.blocks[0], {});
   finish_blocks(links);
   std::vector<double> out(2, 7);
-  gather(links, std::vector<double>{1, 1}, out);
+  multiply(links, std::vector<double>{1, 1}, out);
   EXPECT_EQ(out, (std::vector<double>{0, 0}));
   EXPECT_EQ(links.count(), 0u);
   for (const double sum : row_sums(links)) EXPECT_EQ(sum, 0);

@@ -14,71 +14,73 @@
 namespace hemibake {
 namespace {
 
-using Rows = std::vector<std::vector<Link>>;
+using Rows = std::vector<std::vector<FormFactor>>;
 
-Links links_of(const Rows& rows) {
-  Links links = make_links(static_cast<uint32_t>(rows.size()), static_cast<uint32_t>(rows.size()));
-  for (size_t i = 0; i < rows.size(); ++i) append_row(links.blocks[i / Links::kRowsPerBlock], rows[i]);
+FormFactorMatrix links_of(const Rows& rows) {
+  FormFactorMatrix links =
+      make_form_factors(static_cast<uint32_t>(rows.size()), static_cast<uint32_t>(rows.size()));
+  for (size_t i = 0; i < rows.size(); ++i)
+    append_row(links.blocks[i / FormFactorMatrix::kRowsPerBlock], rows[i]);
   finish_blocks(links);
   return links;
 }
 
-TEST(LinkGroups, APairIsAGeometricSeries) {
+TEST(BlockJacobi, APairIsAGeometricSeries) {
   // 0.75 and 0.5 stay what they are in links: quarters. Patch 1 sees 0 and 2 by little.
-  const LinkGroups groups =
-      group_links(links_of({{{2, 0.75f}}, {{0, 0.125f}, {2, 0.125f}}, {{0, 0.5f}}, {}}), {});
+  const BlockJacobi groups =
+      make_block_jacobi(links_of({{{2, 0.75f}}, {{0, 0.125f}, {2, 0.125f}}, {{0, 0.5f}}, {}}), {});
   EXPECT_EQ(groups.members, (std::vector<uint32_t>{0, 2}));
   EXPECT_EQ(groups.first_member, (std::vector<uint32_t>{0, 2}));
   // (1 −¾; −½ 1)⁻¹ = (1 ¾; ½ 1) / (1 − ⅜)
   std::vector<double> light{1, 7, 10, 3};
-  pass_on_in_groups(groups, light);
+  apply_block_jacobi(groups, light);
   const double series = 1 / (1 - 0.375);
   const std::vector<double> expected{series * (1 + 7.5), 7, series * (0.5 + 10), 3};
   for (size_t i = 0; i < light.size(); ++i)
     EXPECT_NEAR(light[i], expected[i], 1e-6 * expected[i]);  // entries are floats
 }
 
-TEST(LinkGroups, AlbedoWeakensLinks) {
-  const Links links = links_of({{{1, 1.0f}}, {{0, 0.75f}}});
+TEST(BlockJacobi, AlbedoWeakensLinks) {
+  const FormFactorMatrix links = links_of({{{1, 1.0f}}, {{0, 0.75f}}});
   const std::vector<float> weak{0.25f, 0.25f}, uneven{0.5f, 1.0f};
-  EXPECT_EQ(group_links(links, weak).count(), 0u);
-  const LinkGroups groups = group_links(links, uneven);
+  EXPECT_EQ(make_block_jacobi(links, weak).count(), 0u);
+  const BlockJacobi groups = make_block_jacobi(links, uneven);
   ASSERT_EQ(groups.count(), 1u);
   // (1 −1·1; −0.75·0.5 1)⁻¹
   EXPECT_NEAR(groups.inverse[1], 1 / (1 - 0.375), 1e-6);
   EXPECT_NEAR(groups.inverse[2], 0.375 / (1 - 0.375), 1e-6);
 }
 
-TEST(LinkGroups, WhatLosesNothingIsLeftAlone) {
-  const LinkGroups groups = group_links(links_of({{{1, 1.0f}}, {{0, 1.0f}}}), {});
+TEST(BlockJacobi, WhatLosesNothingIsLeftAlone) {
+  const BlockJacobi groups = make_block_jacobi(links_of({{{1, 1.0f}}, {{0, 1.0f}}}), {});
   std::vector<double> light{0.25, 0.5};
-  pass_on_in_groups(groups, light);
+  apply_block_jacobi(groups, light);
   EXPECT_EQ(light, (std::vector<double>{0.25, 0.5}));
   // A row that sees only itself has no other to be with.
-  EXPECT_EQ(group_links(links_of({{{0, 1.0f}}, {{0, 0.125f}}}), {}).count(), 0u);
+  EXPECT_EQ(make_block_jacobi(links_of({{{0, 1.0f}}, {{0, 0.125f}}}), {}).count(), 0u);
 }
 
-TEST(LinkGroups, GroupsAndEntriesAreBounded) {
+TEST(BlockJacobi, GroupsAndEntriesAreBounded) {
   // A ring of strong links: it would be one group.
   constexpr uint32_t kPatches = 1000;
   Rows rows(kPatches);
   for (uint32_t i = 0; i < kPatches; ++i) rows[i] = {{(i + 1) % kPatches, 0.75f}};
-  const LinkGroups groups = group_links(links_of(rows), {});
+  const BlockJacobi groups = make_block_jacobi(links_of(rows), {});
   EXPECT_GT(groups.count(), 0u);
   EXPECT_LE(groups.inverse.size(), 2u * kPatches);
   for (size_t g = 0; g < groups.count(); ++g)
-    EXPECT_LE(groups.first_member[g + 1] - groups.first_member[g], LinkGroups::kMostMembers);
+    EXPECT_LE(groups.first_member[g + 1] - groups.first_member[g], BlockJacobi::kMostMembers);
 }
 
-TEST(LinkGroups, SameBytesAtAnyThreadCount) {
+TEST(BlockJacobi, SameBytesAtAnyThreadCount) {
   const Surface surface = white_noise_surface(24, 24, 0.5);
   SliceOptions options;
   options.azimuths = 8;
-  const Visibility seen = trace_surface(*make_slice_tracer(surface, options), 24, 24, Patches::kFacets, true);
+  const LightTransport seen = trace_surface(*make_slice_tracer(surface, options), true);
   set_thread_count(1);
-  const LinkGroups one = group_links(seen.patches, {});
+  const BlockJacobi one = make_block_jacobi(seen.patch_form_factors, {});
   set_thread_count(2);
-  const LinkGroups two = group_links(seen.patches, {});
+  const BlockJacobi two = make_block_jacobi(seen.patch_form_factors, {});
   set_thread_count(0);
   EXPECT_GT(one.count(), 0u);
   EXPECT_EQ(one.members, two.members);

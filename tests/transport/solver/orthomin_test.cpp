@@ -14,26 +14,25 @@
 namespace hemibake {
 namespace {
 
-Visibility see(const Surface& surface) {
+LightTransport see(const Surface& surface) {
   SliceOptions options;
   options.azimuths = 8;
-  return trace_surface(*make_slice_tracer(surface, options), surface.width(), surface.height(),
-                       Patches::kFacets, true);
+  return trace_surface(*make_slice_tracer(surface, options), true);
 }
 
-std::vector<double> direct_of(const Visibility& seen) {
+std::vector<double> direct_of(const LightTransport& seen) {
   return {seen.patch_direct().begin(), seen.patch_direct().end()};
 }
 
 // E = direct + W diag(albedo) E by Gaussian elimination with pivots.
-std::vector<double> solve_densely(const Links& links, const std::vector<float>& albedo,
+std::vector<double> solve_densely(const FormFactorMatrix& links, const std::vector<float>& albedo,
                                   std::vector<double> right) {
   const size_t n = links.rows;
   std::vector<std::vector<double>> matrix(n, std::vector<double>(n));
   for (size_t column = 0; column < n; ++column) {
     std::vector<double> one(n), product(n);
     one[column] = static_cast<double>(albedo[column]);
-    gather(links, one, product);
+    multiply(links, one, product);
     for (size_t row = 0; row < n; ++row) matrix[row][column] = (row == column) - product[row];
   }
   for (size_t k = 0; k < n; ++k) {
@@ -56,19 +55,19 @@ std::vector<double> solve_densely(const Links& links, const std::vector<float>& 
 }
 
 // Products until no residual exceeds `tolerance`, light in `light`.
-int solve(const Visibility& seen, const std::vector<float>& albedo, double tolerance,
+int solve(const LightTransport& seen, const std::vector<float>& albedo, double tolerance,
           std::vector<double>& light) {
   const std::vector<double> direct = direct_of(seen);
-  LightSolver solver(seen.patches, albedo, std::vector<double>(direct.size()), direct);
+  Orthomin solver(seen.patch_form_factors, albedo, std::vector<double>(direct.size()), direct);
   int products = 0;
   while (solver.largest_residual() > tolerance && solver.step()) ++products;
   light = solver.light();
   return products;
 }
 
-TEST(LightSolver, AgreesWithEliminationAtAnyAlbedo) {
-  const Visibility seen = see(white_noise_surface(7, 5, 0.2));
-  const size_t patches = seen.patches.rows;
+TEST(Orthomin, AgreesWithEliminationAtAnyAlbedo) {
+  const LightTransport seen = see(white_noise_surface(7, 5, 0.2));
+  const size_t patches = seen.patch_form_factors.rows;
   for (const float albedo : {0.0f, 0.5f, 0.999999f, 1.0f, -1.0f}) {
     std::vector<float> albedos(patches, albedo);
     // Below 0: every patch another one.
@@ -76,8 +75,9 @@ TEST(LightSolver, AgreesWithEliminationAtAnyAlbedo) {
     constexpr double kResidual = 1e-13;
     std::vector<double> light;
     solve(seen, albedos, kResidual, light);
-    const std::vector<double> exact = solve_densely(seen.patches, albedos, direct_of(seen)),
-                              sums = solve_densely(seen.patches, albedos, std::vector<double>(patches, 1.0));
+    const std::vector<double> exact = solve_densely(seen.patch_form_factors, albedos, direct_of(seen)),
+                              sums = solve_densely(seen.patch_form_factors, albedos,
+                                                   std::vector<double>(patches, 1.0));
     // What is left of a residual adds up to that; products round what they multiply to nothing.
     const double tolerance = 2 * kResidual * *std::ranges::max_element(sums);
     for (size_t i = 0; i < patches; ++i) ASSERT_NEAR(light[i], exact[i], tolerance) << albedo;
@@ -86,14 +86,14 @@ TEST(LightSolver, AgreesWithEliminationAtAnyAlbedo) {
 
 // Pairs that see each other and lose 2⁻⁶ … 2⁻¹² of their light to a node that sees the sky by half, and that
 // sees one of each pair.
-TEST(LightSolver, LightStaysInDeepPits) {
+TEST(Orthomin, LightStaysInDeepPits) {
   constexpr uint32_t kPairs = 7;
-  Links links = make_links(2 * kPairs + 1, 2 * kPairs + 1);
-  std::vector<Link> sky;
+  FormFactorMatrix links = make_form_factors(2 * kPairs + 1, 2 * kPairs + 1);
+  std::vector<FormFactor> sky;
   for (uint32_t pair = 0; pair < kPairs; ++pair) {
     const float lost = std::ldexp(1.0f, -6 - static_cast<int>(pair));
-    append_row(links.blocks[0], std::vector<Link>{{2 * pair + 1, 1 - lost}, {2 * kPairs, lost}});
-    append_row(links.blocks[0], std::vector<Link>{{2 * pair, 1.0f}});
+    append_row(links.blocks[0], std::vector<FormFactor>{{2 * pair + 1, 1 - lost}, {2 * kPairs, lost}});
+    append_row(links.blocks[0], std::vector<FormFactor>{{2 * pair, 1.0f}});
     sky.push_back({2 * pair, 0.5f / 8});
   }
   append_row(links.blocks[0], sky);
@@ -101,7 +101,7 @@ TEST(LightSolver, LightStaysInDeepPits) {
   // All in rows that add up to 1 with their sky, so that light is 1 everywhere.
   std::vector<double> direct = row_sums(links);
   for (double& value : direct) value = 1 - value;
-  LightSolver solver(links, {}, std::vector<double>(direct.size()), direct);
+  Orthomin solver(links, {}, std::vector<double>(direct.size()), direct);
   int products = 0;
   while (solver.largest_residual() > 1e-14 && solver.step()) ++products;
   EXPECT_LE(products, 8 + 2 * 3);  // eight before the groups; then all pairs are alike: two ways to go
@@ -109,39 +109,39 @@ TEST(LightSolver, LightStaysInDeepPits) {
 }
 
 // Deep pits at albedo 1, where the light is 1 everywhere in the end: neither made nor lost.
-TEST(LightSolver, TakesAFractionOfTheBounces) {
+TEST(Orthomin, TakesAFractionOfTheBounces) {
   // Rows add up to 1 to the rounding of E₀ to float, 3·10⁻⁸, which a pit multiplies by the bounces it needs.
   constexpr double kTolerance = 1e-5;
-  const Visibility seen = see(white_noise_surface(20, 20, 0.5));
+  const LightTransport seen = see(white_noise_surface(20, 20, 0.5));
   const std::vector<double> direct = direct_of(seen);
   const auto furthest = [](const std::vector<double>& light) {
     double distance = 0;
     for (const double value : light) distance = std::max(distance, std::abs(1 - value));
     return distance;
   };
-  LightSolver solver(seen.patches, {}, std::vector<double>(direct.size()), direct);
+  Orthomin solver(seen.patch_form_factors, {}, std::vector<double>(direct.size()), direct);
   int products = 0, bounces = 0;
   while (furthest(solver.light()) > kTolerance && solver.step()) ++products;
   EXPECT_LE(furthest(solver.light()), kTolerance);
   std::vector<double> last = direct, sum = direct, next;
   for (; furthest(sum) > kTolerance && bounces < 5000; ++bounces) {
-    reflect(seen.patches, {}, last, next);
+    apply_transport(seen.patch_form_factors, {}, last, next);
     last.swap(next);
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += last[i];
   }
   EXPECT_LT(3 * products, bounces) << products;
 }
 
-TEST(LightSolver, EndsWhereNothingIsLeft) {
-  const Visibility seen = see(white_noise_surface(8, 8, 0.1));
-  const size_t patches = seen.patches.rows;
-  LightSolver dark(seen.patches, {}, std::vector<double>(patches), std::vector<double>(patches));
+TEST(Orthomin, EndsWhereNothingIsLeft) {
+  const LightTransport seen = see(white_noise_surface(8, 8, 0.1));
+  const size_t patches = seen.patch_form_factors.rows;
+  Orthomin dark(seen.patch_form_factors, {}, std::vector<double>(patches), std::vector<double>(patches));
   EXPECT_FALSE(dark.step());
   EXPECT_EQ(dark.largest_residual(), 0);
 }
 
-TEST(LightSolver, SameBytesAtAnyThreadCount) {
-  const Visibility seen = see(white_noise_surface(48, 48, 0.1));
+TEST(Orthomin, SameBytesAtAnyThreadCount) {
+  const LightTransport seen = see(white_noise_surface(48, 48, 0.1));
   std::vector<double> one, two;
   set_thread_count(1);
   solve(seen, {}, 1e-8, one);

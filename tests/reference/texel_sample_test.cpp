@@ -1,4 +1,4 @@
-#include "tracers/texel_sample.h"
+#include "reference/texel_sample.h"
 
 #include <gtest/gtest.h>
 
