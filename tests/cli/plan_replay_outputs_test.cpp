@@ -49,9 +49,9 @@ TEST_F(Plan, LinksThatDoNotFitGoToAFile) {
   EXPECT_EQ(kept.total.values, spilled.total.values);
   const LinksFile kept_links = read_links(folder_ / "kept.h5"),
                   spilled_links = read_links(folder_ / "spilled.h5");
-  ASSERT_EQ(kept_links.patches->blocks.size(), spilled_links.patches->blocks.size());
-  for (size_t b = 0; b < kept_links.patches->blocks.size(); ++b)
-    EXPECT_EQ(kept_links.patches->blocks[b].packed, spilled_links.patches->blocks[b].packed);
+  ASSERT_EQ(kept_links.patch_form_factors->blocks.size(), spilled_links.patch_form_factors->blocks.size());
+  for (size_t b = 0; b < kept_links.patch_form_factors->blocks.size(); ++b)
+    EXPECT_EQ(kept_links.patch_form_factors->blocks[b].packed, spilled_links.patch_form_factors->blocks[b].packed);
   EXPECT_EQ(listing().size(), 5u);  // the map and four outputs
 }
 
