@@ -1,4 +1,4 @@
-// Surfaces whose light is known (FACTS.md §6), through the whole pipeline: map, surface, Embree, links,
+// Tests surfaces whose light is known, through the whole pipeline: map, surface, Embree, links,
 // bounces.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -156,7 +156,7 @@ TEST_P(Groove, TexelsAcrossTheWall) {
     const double f = (length * std::cos(2 * angle_) - s) /
                      std::sqrt(length * length + s * s - 2 * length * s * std::cos(2 * angle_));
     const size_t texel = surface_.heights_m.index(i, 1);
-    // One edge crosses the hemisphere: N^(−3/4) (FACTS.md §6), four of it.
+    // One edge crosses the hemisphere: N^(−3/4), four of it.
     const double tolerance = 4 * std::pow(kRays, -0.75);
     EXPECT_NEAR(traced.seen.visible_fraction[texel], std::acos(f) / kPi, tolerance) << "texel " << i;
     EXPECT_NEAR(traced.seen.direct_over_pi[texel], (1 - f) / 2, tolerance) << "texel " << i;
