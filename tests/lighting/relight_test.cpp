@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/constants.h"
-#include "lighting/scene.h"
+#include "lighting/shaded_scene.h"
 #include "support/maps.h"
 #include "tracers/embree/embree.h"
 #include "transport/bounces.h"
@@ -35,7 +35,7 @@ TEST(Relight, TwoPatchesWithTheirOwnAlbedo) {
   const ColoredLight direct{{glm::dvec3(1, 2, 0), glm::dvec3(3, 0, 0)},
                             {glm::dvec3(1, 2, 0), glm::dvec3(3, 0, 0)}};
   const std::vector<glm::vec3> albedo = {{0.5f, 0.25f, 1}, {0.25f, 1, 1}};
-  const Relit relit = relight_over_links(seen, direct, albedo, 60);
+  const Relit relit = relight_by_transport(seen, direct, albedo, 60);
   for (int c = 0; c < 3; ++c) {
     const double a = 0.75 * static_cast<double>(albedo[1][c]), b = 0.5 * static_cast<double>(albedo[0][c]);
     const double e1 = direct.texel_light[0][c], e2 = direct.texel_light[1][c];
@@ -76,7 +76,7 @@ TEST_F(RelightWall, ConstantMapIsPowersOfAlbedo) {
   const glm::vec3 albedo(0.9f, 0.6f, 0);
   const Relit powers = relight_constant(bounce_light(seen(), {}).irradiance, albedo);
   const Albedo map{glm::vec3(0), Grid<glm::vec3>(24, 20, albedo)};
-  const Relit over_links = relight_over_links(
+  const Relit over_links = relight_by_transport(
       seen(), uniform_light(), albedo_of_patches(surface(), map, make_patches(surface(), PatchKind::kFacets)),
       20, kPi);
   ASSERT_EQ(powers.bounces.size(), over_links.bounces.size());
@@ -93,7 +93,7 @@ TEST_F(RelightWall, ConstantMapIsPowersOfAlbedo) {
 }
 
 TEST_F(RelightWall, BlackWallReflectsNothing) {
-  const Relit relit = relight_over_links(
+  const Relit relit = relight_by_transport(
       seen(), uniform_light(), std::vector<glm::vec3>(seen().final_gather.columns, glm::vec3(0)), 3);
   for (size_t i = 0; i < relit.total.size(); ++i) EXPECT_EQ(relit.total[i], relit.bounces[0][i]);
   EXPECT_EQ(relit.largest_rest, 0);
@@ -150,20 +150,20 @@ TEST(Relight, PatchesHaveTheAlbedoBetweenTheTexels) {
 
 // AO darkens the sky's light only: a sun adds the same to every picture.
 TEST(ShadedScene, NoAoDarkensTheSun) {
-  ShadedScene wall;
-  wall.bake.width = 3;
-  wall.bake.height = 1;
-  wall.bake.visible_fraction = Grid<float>(3, 1);
-  for (size_t i = 0; i < 3; ++i) wall.bake.visible_fraction[i] = 0.5f * static_cast<float>(i);
-  wall.albedo.constant = {0.5f, 0.25f, 1};
-  wall.sky = Grid<glm::vec3>(3, 1, glm::vec3(2));
+  ShadedScene scene;
+  scene.bake.width = 3;
+  scene.bake.height = 1;
+  scene.bake.visible_fraction = Grid<float>(3, 1);
+  for (size_t i = 0; i < 3; ++i) scene.bake.visible_fraction[i] = 0.5f * static_cast<float>(i);
+  scene.albedo.constant = {0.5f, 0.25f, 1};
+  scene.sky = Grid<glm::vec3>(3, 1, glm::vec3(2));
   const auto half = [](double ao, double albedo) { return ao * albedo; };
-  const Grid<glm::vec3> ao_before = shade_ao_only(wall), model_before = shade_with(wall, half);
-  wall.sun = Grid<glm::vec3>(3, 1, glm::vec3(4));
-  const Grid<glm::vec3> ao_after = shade_ao_only(wall), model_after = shade_with(wall, half);
+  const Grid<glm::vec3> ao_before = shade_ao_only(scene), model_before = shade_with(scene, half);
+  scene.sun = Grid<glm::vec3>(3, 1, glm::vec3(4));
+  const Grid<glm::vec3> ao_after = shade_ao_only(scene), model_after = shade_with(scene, half);
   for (size_t i = 0; i < 3; ++i)
     for (int c = 0; c < 3; ++c) {
-      const double sun = static_cast<double>(wall.albedo.constant[c]) * 4 / kPi;
+      const double sun = static_cast<double>(scene.albedo.constant[c]) * 4 / kPi;
       EXPECT_NEAR(ao_after[i][c] - ao_before[i][c], sun, 2e-7);
       EXPECT_NEAR(model_after[i][c] - model_before[i][c], sun, 2e-7);
     }
