@@ -49,7 +49,7 @@ struct RobustPasses {
     return std::max(0.0, options.side == OccluderSide::kFront ? factor : -factor);
   }
 
-  // Accessibility of every facet from that of the pass before.
+  // Updates the accessibility of every facet from that of the pass before. Returns the nodes visited.
   uint64_t pass_over_facets(std::vector<double>& accessibility, Progress& progress) const {
     const std::vector<double> emitters = values_of_nodes(tree, accessibility);
     return for_each_receiver(disks.size(), progress, [&](size_t facet) {
