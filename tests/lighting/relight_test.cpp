@@ -45,7 +45,7 @@ TEST(Relight, TwoPatchesWithTheirOwnAlbedo) {
   EXPECT_FLOAT_EQ(relit.bounces[1][0].x, 0.75f * 0.25f * 3);
 }
 
-class RelightWall : public testing::Test {
+class RelightBricks : public testing::Test {
  protected:
   static const Surface& surface() {
     static const Surface map = synthetic_surface(SyntheticKind::kBricks, 24, 20, 0.1);
@@ -72,7 +72,7 @@ class RelightWall : public testing::Test {
 
 // The bar: a map of one value against ρᵇ E_b. Bounces are stored as floats, and every product rounds to float
 // what it multiplies: 2⁻²⁴ of each; below the smallest normal one they are 0.
-TEST_F(RelightWall, ConstantMapIsPowersOfAlbedo) {
+TEST_F(RelightBricks, ConstantMapIsPowersOfAlbedo) {
   const glm::vec3 albedo(0.9f, 0.6f, 0);
   const Relit powers = relight_constant(bounce_light(transport(), {}).irradiance, albedo);
   const Albedo map{glm::vec3(0), Grid<glm::vec3>(24, 20, albedo)};
@@ -92,7 +92,7 @@ TEST_F(RelightWall, ConstantMapIsPowersOfAlbedo) {
     for (int c = 0; c < 3; ++c) ASSERT_NEAR(over_links.total[i][c], powers.total[i][c], 2e-6);
 }
 
-TEST_F(RelightWall, BlackWallReflectsNothing) {
+TEST_F(RelightBricks, BlackWallReflectsNothing) {
   const Relit relit =
       relight_by_transport(transport(), uniform_light(),
                            std::vector<glm::vec3>(transport().final_gather.columns, glm::vec3(0)), 3);
@@ -102,7 +102,7 @@ TEST_F(RelightWall, BlackWallReflectsNothing) {
 
 // At albedo 1 all light comes out: π in every texel, whatever the map; the series knows the rest after 20
 // bounces.
-TEST_F(RelightWall, WhiteWallGivesPi) {
+TEST_F(RelightBricks, WhiteWallGivesPi) {
   const Relit relit = relight_constant(bounce_light(transport(), {}).irradiance, glm::vec3(1));
   double mean = 0;
   for (const glm::vec3& total : relit.total.values) {
