@@ -154,6 +154,7 @@ std::vector<Field> map_fields(MapSettings& s) {
   };
 }
 
+// In the order of the record; the help sorts by group.
 std::vector<Field> bake_fields(BakeSettings& s) {
   const auto marches = [&s] { return s.tracer == TracerKind::kMarch; };
   const auto shoots_rays = [&s] { return s.tracer == TracerKind::kEmbree; };
@@ -171,21 +172,15 @@ std::vector<Field> bake_fields(BakeSettings& s) {
                "azimuths of slices per texel (default 64), or rays per texel and per patch (default 256)"),
       recorded("cone", "cone_degrees", "Tracing", positive(s.cone_degrees, 180),
                "full aperture of the texels' rays about the normal, degrees"),
-      when(shoots_rays,
-           recorded("directions", "directions", "Tracing", choice(s.directions, {"uniform", "cosine"}),
-                    "spread of the texels' rays: equal solid angles (default), or equal shares of "
-                    "irradiance")),
       when(is_limited, recorded("max-distance", "max_distance_m", "Tracing", positive(s.max_distance_m, 1e30),
                                 "hits further along the ray count as sky, m; default: no limit")),
-      when(has_target,
-           recorded("target-error", "target_error", "Tracing", number(s.target_error, 1e-4, 0.5),
-                    "choose rays and bounces so that the rms errors of AO, E0/pi and E/pi (albedo 0.2 to "
-                    "0.95) stay below this; a sample of texels is traced first, and another afterwards says "
-                    "what was reached")),
       unrecorded("explain", "Tracing", flag(s.explain),
                  "with --target-error: say how rays and bounces were chosen"),
       recorded("seed", "seed", "Tracing", whole(s.seed, 0), "another number, other random rotations"),
 
+      recorded("patches", "patches", "Light", choice(s.patch_kind, {"facets", "texels"}),
+               "what re-emits light: the surface's triangles (default), or the texels (as published in 2018; "
+               "the only ones of march)"),
       unrecorded("preset", "March", choice(s.preset, {"published"}),
                  "published: the experiment of 2018, all options of this group and --tracer march --rays "
                  "1024 --cone 179 --normal-y up; any of them given too wins"),
@@ -204,12 +199,16 @@ std::vector<Field> bake_fields(BakeSettings& s) {
            recorded("normal-length", "normal_length", "March", choice(s.normal_length, {"unit", "stored"}),
                     "rays follow unit normals, or the map's as stored [stored]")),
 
-      recorded("patches", "patches", "Light", choice(s.patch_kind, {"facets", "texels"}),
-               "what re-emits light: the surface's triangles (default), or the texels (as published in 2018; "
-               "the only ones of march)"),
+      when(shoots_rays,
+           recorded("directions", "directions", "Tracing", choice(s.directions, {"uniform", "cosine"}),
+                    "spread of the texels' rays: equal solid angles (default), or equal shares of "
+                    "irradiance")),
       when(links_texels,
            recorded("texel-links", "texel_links", "Light", choice(s.texel_links, {"nearest", "bilinear"}),
                     "with --patches texels: a hit links to the nearest texel or to four")),
+      recorded("outputs", "outputs", "Output", choices(s.outputs, {"ao", "irradiance", "bent", "normal"}),
+               "planes to write, separated by commas; links are traced only for irradiance with bounces, or "
+               "--links"),
       recorded("bounces", "bounces", "Light", whole(s.bounces, 0, kMaxStoredBounces),
                "bounces stored one by one"),
       when(converges,
@@ -219,9 +218,11 @@ std::vector<Field> bake_fields(BakeSettings& s) {
       when(converges, recorded("max-bounces", "max_bounces", "Light", whole(s.max_bounces, 1, kMaxBounces),
                                "where --converge gives up")),
 
-      recorded("outputs", "outputs", "Output", choices(s.outputs, {"ao", "irradiance", "bent", "normal"}),
-               "planes to write, separated by commas; links are traced only for irradiance with bounces, or "
-               "--links"),
+      when(has_target,
+           recorded("target-error", "target_error", "Tracing", number(s.target_error, 1e-4, 0.5),
+                    "choose rays and bounces so that the rms errors of AO, E0/pi and E/pi (albedo 0.2 to "
+                    "0.95) stay below this; a sample of texels is traced first, and another afterwards says "
+                    "what was reached")),
       unrecorded("memory", "Output", positive(s.memory_gib, 1e6),
                  "links that need more go to a temporary file beside the output, a bake that still does is "
                  "refused, GiB; default: what the machine has"),

@@ -48,6 +48,7 @@ CLI::Option* add_option(CLI::App& app, const Field& field) {
       field.help);
   option->type_name(field.value.type);
   if (field.value.separated) option->delimiter(',');
+  option->allow_extra_args(field.value.most != 1);
   if (field.value.most < 0)
     option->expected(field.value.fewest, CLI::detail::expected_max_vector_size);
   else
