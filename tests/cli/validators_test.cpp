@@ -1,4 +1,4 @@
-// Numbers as people type them, and as they should not.
+// Numbers in the notations people type, and notations that are refused.
 #include "cli/validators.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(Validators, WholeNumberIn) {
   const CLI::Validator validator = whole_number_in(1, 1000);
   expect_taken(validator, {"1", "10", "1000"});
   expect_refused(validator, kNoNumbers, "a whole number from 1 to 1000");
-  // Octal and hexadecimal notation would pass for other numbers than they look like.
+  // Octal and hexadecimal notation would be read as other numbers than they look like.
   expect_refused(validator, {"0", "1001", "-1", "+1", "1.0", "1e2", "0x10", "010", "99999999999999999999"},
                  "a whole number from 1 to 1000");
   expect_taken(whole_number_in(0, UINT64_MAX), {"0", "18446744073709551615"});
