@@ -14,7 +14,7 @@ struct CommandHelp {
   std::vector<const char*> options;
 };
 
-// The commands, whose names are a contract: scripts call them.
+// Options that scripts rely on: their names are a contract.
 const std::vector<const char*> kBakeOptions = {
     "--channel", "--size",  "--amplitude", "--normals", "--normal-y", "--normals-from", "--edge",
     "--tracer",  "--rays",  "--cone",      "--bounces", "--converge", "--max-bounces",  "--max-distance",
@@ -29,7 +29,7 @@ const std::vector<CommandHelp> kCommands = {
     {"run", {"--bins"}},
     {"report", {"--albedo", "--image-size"}}};
 
-TEST(Help, NamesEveryOptionOfTheDesign) {
+TEST(Help, NamesEveryPromisedOption) {
   for (const CommandHelp& command : kCommands) {
     const CommandResult help = run_hemibake(std::string(command.command) + " --help");
     EXPECT_EQ(help.exit_code, 0) << command.command;
