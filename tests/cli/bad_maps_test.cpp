@@ -1,4 +1,4 @@
-// Maps and normal maps that cannot be baked, one by one.
+// Refusal of maps and normal maps that cannot be baked, one by one.
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ class BadMaps : public CliTest {
     expect_refusal(fmt::format("bake {} -o bake.exr --rays 4 {}", map, options), line);
   }
 
-  // A float map with one value that write_image would not write.
+  // Writes a float map with one value that write_image would refuse.
   void write_map_with(const std::string& name, float bad) const {
     std::vector<float> heights(20, 0.25f);
     heights[13] = bad;
@@ -59,7 +59,7 @@ TEST_F(BadMaps, CutShort) {
   write_map("map.exr", SyntheticKind::kShapes, 32, 32);
   for (const std::string name : {"map.png", "map.exr"}) {
     const std::string whole = read_bytes(folder_ / name);
-    // In the signature, the header, the texels, and one byte before the end.
+    // Cut in the signature, the header, the texels, and one byte before the end.
     for (const size_t length : {size_t{4}, size_t{20}, whole.size() / 2, whole.size() - 1}) {
       write_bytes(folder_ / ("cut_" + name), whole.substr(0, length));
       expect_bad_map("cut_" + name,
@@ -76,7 +76,7 @@ TEST_F(BadMaps, OfARunLeaveNoFolder) {
 }
 
 TEST_F(BadMaps, WithoutTexels) {
-  // Width 0 in the header chunk of a PNG, and far too much: the CRC of the chunk then tells too.
+  // Width 0 in the header chunk of a PNG, and far too large a width: both break the chunk's CRC too.
   for (const std::string& width : {std::string(4, '\0'), std::string("\x7f\xff\xff\xff")}) {
     std::string bytes = read_bytes(folder_ / "map.png");
     write_bytes(folder_ / "size.png", bytes.replace(16, 4, width));

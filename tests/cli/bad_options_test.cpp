@@ -1,4 +1,4 @@
-// Option values that make no sense, one by one: refused by name, with what was expected, before any work.
+// Refusal of option values that make no sense: by name, with the value expected, before any work.
 #include <fmt/format.h>
 
 #include "cli/run_hemibake.h"
@@ -27,7 +27,8 @@ struct BadValue {
   const char* value;
 };
 
-// Every option of a bake with a value just outside; what numbers look like is in validators_test.cpp.
+// Every option of a bake with a value just outside its range; validators_test.cpp tests the notation of
+// numbers.
 TEST_F(BadOptions, OfABake) {
   for (const auto& [option, value] : std::vector<BadValue>{{"--size", "0"},
                                                            {"--size", "nan"},

@@ -1,4 +1,4 @@
-// Places that cannot be written to: refused in the first moments, or, where the disk fills, without a trace.
+// Refusal of places that cannot be written to: at once, or, where the disk fills, without a trace.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -17,7 +17,7 @@ class BadOutputs : public CliTest {
  protected:
   void SetUp() override {
     write_map("map.exr", SyntheticKind::kShapes, 64, 64);
-    // What curves and fit would read, if they came to it.
+    // Input for curves and fit, which they must not reach.
     write_bytes(folder_ / "done.exr", "no bake");
     write_bytes(folder_ / "done.csv", "no curves");
   }
@@ -31,7 +31,7 @@ class BadOutputs : public CliTest {
     std::string command;  // up to the output's name
     std::string suffix;
   };
-  // A million rays per texel: what is refused only after the work does not end here.
+  // A million rays per texel: a refusal that comes only after the work would time out.
   const std::vector<Line> lines_ = {{"synth shapes --width 64 --height 64 -o ", ".exr"},
                                     {"bake map.exr --rays 1048576 -o ", ".exr"},
                                     {"bake map.exr --rays 1048576 -o links_go_elsewhere.exr --links ", ".h5"},

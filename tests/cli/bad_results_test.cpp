@@ -1,4 +1,4 @@
-// Files that say they are bakes, curves or fits and are not, or hold what cannot be.
+// Refusal of files that claim to be bakes, curves or fits, or hold impossible values.
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -21,13 +21,13 @@ class BadResults : public CliTest {
     write_map("map.exr", SyntheticKind::kShapes, 32, 32);
     run_well("bake map.exr -o bake.exr --rays 64 --amplitude 0.4");
   }
-  // The bake with something wrong in it.
+  // Writes the bake with one fault in it.
   void write_changed(const std::string& name, const std::function<void(BakeFile&)>& change) const {
     BakeFile file = read_bake(folder_ / "bake.exr");
     change(file);
     write_bake(folder_ / name, file.bake, file.provenance);
   }
-  // `quantity` is judged and fails.
+  // Expects that `quantity` is judged and fails.
   void expect_failed_check(const std::string& arguments, const std::string& quantity) const {
     const CommandResult result = run("check " + arguments);
     EXPECT_EQ(result.exit_code, 1) << arguments;
@@ -66,7 +66,7 @@ TEST_F(BadResults, BakesThatCannotBe) {
     for (float& value : file.bake.total.values) value *= 0.99f;
   });
   expect_failed_check("dark.exr", R"(energy sum/pi \+ residual)");
-  // One texel of 1024.
+  // Changes one texel of 1024.
   write_changed("blind.exr", [](BakeFile& file) { file.bake.visible_fraction(3, 2) = 0.001f; });
   expect_failed_check("blind.exr", R"(E0/pi above ao\(2-ao\), worst texel .* texel 3,2)");
   write_changed("rows.exr", [](BakeFile& file) { file.provenance["row_sum_error"] = 1e-3; });

@@ -18,7 +18,7 @@ constexpr double kK = 0.79, kE = 1.03, kA = 38.4, kB = 3.85;
 
 class CurvesAndFit : public testing::Test {
  protected:
-  // A bake of 400 × 3 texels that follows the published formulas with the constants above.
+  // Writes a bake of 400 × 3 texels that follows the published formulas with the constants above.
   void write_model_bake(const std::string& name) const {
     Bake bake;
     bake.width = 400;

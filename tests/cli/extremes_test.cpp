@@ -1,4 +1,4 @@
-// Maps at the ends of what there is: one texel, one row, flat, nearly flat, absurdly high, of few bits.
+// Extreme maps: one texel, one row, flat, nearly flat, absurdly high, few bits.
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -44,7 +44,7 @@ TEST_F(Extremes, OneTexelAndOneRow) {
   }
 }
 
-// Flat ground: all is sky, nothing is left to bounce, and there is one AO value: no curve to fit.
+// Flat ground: only sky, no bounces, a single AO value and so no curve to fit.
 TEST_F(Extremes, FlatGround) {
   write_map("flat.exr", SyntheticKind::kFlat, 32, 32);
   write_map("shapes.exr", SyntheticKind::kShapes, 32, 32);
@@ -73,10 +73,11 @@ TEST_F(Extremes, FlatGround) {
 
 TEST_F(Extremes, LowAndHigh) {
   write_map("map.exr", SyntheticKind::kShapes, 32, 32);
-  // A micrometre over a metre: the sky is whole to 10⁻⁵ but for the rays along the ground, one of 64 or two.
+  // A micrometre over a metre: the sky is whole to 10⁻⁵, except for the one or two of 64 rays along the
+  // ground.
   const Bake low = bake("map.exr --amplitude 1e-6 --rays 64");
   for (const float ao : low.visible_fraction.values) EXPECT_GT(ao, 1 - 3.0 / 64);
-  // A kilometre: walls of 89.998°. Whatever can be finite is, and no texel gets more light than there is.
+  // A kilometre: walls of 89.998°. All values are finite, and no texel gets more light than the sky gives.
   const CommandResult high = run("run map.exr -o high --amplitude 1e3 --rays 64");
   EXPECT_THAT(high.exit_code, testing::AnyOf(0, 1)) << high.standard_error;
   const BakeFile made = read_bake(folder_ / "high/bake.exr");

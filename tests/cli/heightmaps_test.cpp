@@ -1,4 +1,4 @@
-// The maps in heightmaps/ are what the lines recorded beside them make.
+// Makes the maps of heightmaps/ again by the lines recorded beside them, and compares every pixel.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The `hemibake synth … -o heightmaps/NAME` lines of heightmaps/README.md.
+// A `hemibake synth … -o heightmaps/NAME` line of heightmaps/README.md.
 struct RecordedLine {
   std::string arguments;  // up to -o
   std::string name;

@@ -1,4 +1,4 @@
-// What every command says: --help for people, --json for programs.
+// Output of every command: --help for people, --json for programs.
 #include <fmt/format.h>
 
 #include "cli/run_hemibake.h"
@@ -14,7 +14,7 @@ struct CommandHelp {
   std::vector<const char*> options;
 };
 
-// DESIGN.md, "Commands".
+// Options that scripts rely on: their names are a contract.
 const std::vector<const char*> kBakeOptions = {
     "--channel", "--size",  "--amplitude", "--normals", "--normal-y", "--normals-from", "--edge",
     "--tracer",  "--rays",  "--cone",      "--bounces", "--converge", "--max-bounces",  "--max-distance",
@@ -29,7 +29,7 @@ const std::vector<CommandHelp> kCommands = {
     {"run", {"--bins"}},
     {"report", {"--albedo", "--image-size"}}};
 
-TEST(Help, NamesEveryOptionOfTheDesign) {
+TEST(Help, NamesEveryPromisedOption) {
   for (const CommandHelp& command : kCommands) {
     const CommandResult help = run_hemibake(std::string(command.command) + " --help");
     EXPECT_EQ(help.exit_code, 0) << command.command;
@@ -47,7 +47,7 @@ TEST(Help, NamesEveryOptionOfTheDesign) {
 
 TEST(Help, SaysUnitsRangesAndDefaults) {
   const std::string help = run_hemibake("bake --help").standard_output;
-  // Option, range, default; then what it is, in what unit, on the next line.
+  // Option, range, default; then its meaning and unit on the next line.
   for (const char* line :
        {R"(--size FLOAT:in \(0 - 1000000000\]=1[^0-9])", R"(longer side, m)",
         R"(--amplitude FLOAT:in \[0 - .*\]=0\.1)", R"(--cone FLOAT:in \(0 - 180\]=180)", "degrees",
@@ -78,7 +78,7 @@ TEST_F(JsonOutput, IsOneObjectOfEveryCommand) {
   EXPECT_EQ(run_json("bake map.exr --texel 5,7 --rays 16").at("texel"), nlohmann::json({5, 7}));
   const nlohmann::json bake = run_json("bake map.exr -o bake.exr --rays 64 --converge 1e-3 --max-bounces 20");
   EXPECT_GT(bake.at("rays_traced"), 0);
-  // Warnings are for people too: on standard error.
+  // Warnings are for people too, so they go to standard error.
   EXPECT_FALSE(bake.at("warnings").empty());
   EXPECT_EQ(run_json("curves bake.exr -o curves.csv").at("bins"), 100);
   EXPECT_TRUE(run_json("fit curves.csv -o fit.json").contains("F1"));

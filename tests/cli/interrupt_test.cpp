@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM in the middle of the work: exit code 130 and nothing left behind.
+// Interruption by Ctrl-C and SIGTERM in the middle of the work: exit code 130, no file left behind.
 #include <fmt/format.h>
 
 #include "cli/run_hemibake.h"
@@ -8,7 +8,7 @@ namespace {
 
 class Interrupt : public CliTest {
  protected:
-  // Sends `signal` to work that would take minutes after it has begun; once: the second one kills
+  // Sends `signal` once to work that would take minutes, after it has begun. A second one would kill
   // (--foreground: timeout would send it to its process group as well).
   void expect_clean_end(const std::string& arguments, const std::string& signal) const {
     const auto files = listing();
@@ -31,7 +31,7 @@ TEST_F(Interrupt, WhileTracing) {
   expect_clean_end("run map.exr -o results", "INT");
 }
 
-// FormFactorMatrix between texels of a rough map trap light: a million bounces do not bring it out.
+// Links between texels of a rough map trap light: a million bounces do not bring it out.
 TEST_F(Interrupt, WhileBouncing) {
   write_map("map.exr", SyntheticKind::kNoise, 64, 64);
   expect_clean_end(

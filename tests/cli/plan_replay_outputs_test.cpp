@@ -1,4 +1,4 @@
-// What is said before a bake, what one texel says of itself, and that only what was asked for is made.
+// The plan before a bake, the replay of one texel, and that only the outputs asked for are made.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ TEST_F(Plan, SaysTheMemoryTheBakeThenTakes) {
   EXPECT_NEAR(bake.at("links").get<double>() / plan.at("links").get<double>(), 1, 0.1);
 }
 
-// The same planes and links where the links do not fit the memory allowed; nothing stays of them.
+// Spilled links give the same planes and links, and leave no file behind.
 TEST_F(Plan, LinksThatDoNotFitGoToAFile) {
   write_map("map.exr", SyntheticKind::kNoise, 96, 96);
   const nlohmann::json plan = run_json("bake map.exr --rays 64 --converge 1e-4 --dry-run");
@@ -51,13 +51,14 @@ TEST_F(Plan, LinksThatDoNotFitGoToAFile) {
                   spilled_links = read_links(folder_ / "spilled.h5");
   ASSERT_EQ(kept_links.patch_form_factors->blocks.size(), spilled_links.patch_form_factors->blocks.size());
   for (size_t b = 0; b < kept_links.patch_form_factors->blocks.size(); ++b)
-    EXPECT_EQ(kept_links.patch_form_factors->blocks[b].packed, spilled_links.patch_form_factors->blocks[b].packed);
+    EXPECT_EQ(kept_links.patch_form_factors->blocks[b].packed,
+              spilled_links.patch_form_factors->blocks[b].packed);
   EXPECT_EQ(listing().size(), 5u);  // the map and four outputs
 }
 
 class Replay : public CliTest {
  protected:
-  // rounding: of the sums of weights.
+  // rounding: largest error of the sums of weights.
   void expect_consistent(const std::string& options, double rounding) const {
     run_well("bake map.exr -o bake.exr " + options);
     const Bake bake = read_bake(folder_ / "bake.exr").bake;
@@ -151,7 +152,7 @@ TEST_F(Outputs, LinksOnlyWhereTheyAreNeeded) {
     EXPECT_FALSE(json.contains("row_sum_error")) << options;
     // Facets are not traced either.
     EXPECT_EQ(json.at("rays_traced"), 128 * 128 * 64) << options;
-    // About 3 bytes a link less.
+    // About 3 bytes per link less.
     EXPECT_LT(json.at("peak_memory_bytes").get<double>(),
               whole.at("peak_memory_bytes").get<double>() - 2 * whole.at("links").get<double>())
         << options;

@@ -1,4 +1,4 @@
-// hemibake render: its pictures, what they say of light, and what it does with what it cannot use.
+// `hemibake render` through the real binary: pictures, numbers about light, and refusals.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ class Render : public CliTest {
     for (const auto& entry : list) names.push_back(entry.at("name"));
     return names;
   }
-  // Largest difference of two pictures over `scale`.
+  // Returns the largest difference of two pictures over `scale`.
   double difference(const std::string& a, const std::string& b) const {
     const Grid<glm::vec3> first = picture(a), second = picture(b);
     EXPECT_EQ(first.size(), second.size());
@@ -94,7 +94,7 @@ TEST_F(Render, SameBytesAtAnyThreadCount) {
   EXPECT_GT(files, 40u);
 }
 
-// The bar: an albedo map of one value against ρᵇ, traced again and from the links file.
+// Compares an albedo map of one value with ρᵇ, traced again and from the links file.
 TEST_F(Render, ConstantAlbedoMapIsPowersOfAlbedo) {
   make_bake();
   write_colors("albedo.exr", Grid<glm::vec3>(20, 16, glm::vec3(0.9f, 0.6f, 0.2f)));
@@ -108,7 +108,7 @@ TEST_F(Render, ConstantAlbedoMapIsPowersOfAlbedo) {
     EXPECT_LT(difference(fmt::format("powers/bounce_{:02}.exr", b), fmt::format("again/bounce_{:02}.exr", b)),
               1.2e-7)
         << b;
-  // FormFactorMatrix read back are the same to 10⁻⁴ of their quantum, which is a twelfth of the mean weight
+  // Links read back are the same to 10⁻⁴ of their quantum, which is a twelfth of the mean weight
   // or less.
   EXPECT_LT(difference("again/truth.exr", "links/truth.exr"), 1e-4 / 12);
 }
@@ -157,7 +157,7 @@ TEST_F(Render, HarmonicsOfAUniformSky) {
   run_well("render bake.exr -o uniform --pictures light");
   run_well("render bake.exr -o sh --sky sh sky.txt --links links.h5 --sky-rays 1 --pictures light");
   EXPECT_LT(difference("uniform/ao_only.exr", "sh/ao_only.exr"), 1e-6);
-  // FormFactorMatrix read back are the same to 10⁻⁴ of their quantum, which is a twelfth of the mean weight
+  // Links read back are the same to 10⁻⁴ of their quantum, which is a twelfth of the mean weight
   // or less.
   EXPECT_LT(difference("uniform/truth.exr", "sh/truth.exr"), 1e-4 / 12);
 }
@@ -197,7 +197,7 @@ TEST_F(Render, WhatABakeLacksIsSaid) {
   EXPECT_TRUE(fs::exists(folder_ / "out" / "triptych.png"));
 }
 
-// An earlier run's picture would pass for this one's.
+// An earlier run's picture must not pass for this one's.
 TEST_F(Render, PicturesOfAnEarlierRunGo) {
   make_bake();
   run_well("render bake.exr -o out --pictures light");
@@ -268,7 +268,7 @@ TEST_F(Render, BadInput) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
-// `--sky uniform BAKE.exr`: the bake is not the sky's file.
+// In `--sky uniform BAKE.exr` the bake is not read as the sky's file.
 TEST_F(Render, SkyBeforeTheBake) {
   make_bake();
   run_well("render -o out --pictures planes --sky uniform bake.exr");

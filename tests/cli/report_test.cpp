@@ -23,7 +23,7 @@ class Report : public CliTest {
     if (page_template().empty()) GTEST_SKIP() << "this build has no report";
   }
 
-  // A small bake and all that `run` makes of it.
+  // Writes a small bake and all that `run` makes of it.
   void bake(const std::string& folder, const std::string& options = "") {
     if (!std::filesystem::exists(folder_ / "map.exr")) write_map("map.exr", SyntheticKind::kBricks, 24, 20);
     const CommandResult result = run(fmt::format("run map.exr -o {} --rays 64 {}", folder, options));
@@ -62,7 +62,7 @@ TEST_F(Report, IsTheSameAtAnyThreadCount) {
   EXPECT_EQ(read_bytes(folder_ / "one.html"), read_bytes(folder_ / "four.html"));
 }
 
-// Each of these is a page that says what is missing; that it opens is tested in the browser.
+// Expects a page that names the missing parts. The browser test opens such pages.
 TEST_F(Report, TakesWhatIsThere) {
   bake("bounces", "--bounces 0");
   run_well("report bounces");
@@ -135,7 +135,7 @@ TEST_F(Report, RefusesWhatItCannotUse) {
   for (const char* albedo : {"0.5", "0.5,0.5", "0.5,0.5,1.5", "0.5,0.5,nan", "0.5,0.5,0.5,0.5", "red"})
     expect_refusal(fmt::format("report out --albedo {}", albedo), HasSubstr("--albedo"));
   expect_refusal("report out --image-size 0", HasSubstr("--image-size"));
-  // A disk that is full: nothing is left of the page.
+  // On a full disk no part of the page is left.
   expect_refusal("report out", HasSubstr("out/report.html: could not write"), "trap '' XFSZ; ulimit -f 64; ");
 
   std::filesystem::resize_file(folder_ / "out/bake.exr", 3000);

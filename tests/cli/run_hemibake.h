@@ -27,17 +27,17 @@ CommandResult run_shell(const std::string& line);
 // arguments: as typed in a shell after the program's name.
 CommandResult run_hemibake(const std::string& arguments);
 
-// A test with a folder of its own in which hemibake runs.
+// A test with its own folder, in which hemibake runs.
 class CliTest : public testing::Test {
  protected:
   void write_map(const std::string& name, SyntheticKind kind, int width, int height) const;
   void write_map(const std::string& name, const Grid<float>& heights) const;
 
-  // before: what the shell does first ("ulimit -f 8; ").
+  // before: shell commands to run first ("ulimit -f 8; ").
   CommandResult run(const std::string& arguments, const std::string& before = "") const;
-  // As run, for what has to succeed.
+  // Runs hemibake and expects success.
   CommandResult run_well(const std::string& arguments) const;
-  // The object that run_well prints with --json.
+  // Returns the object that run_well prints with --json.
   nlohmann::json run_json(const std::string& arguments) const;
 
   // Expects exit code 2, nothing on standard output, and on standard error the one line "hemibake: LINE" with
@@ -45,7 +45,7 @@ class CliTest : public testing::Test {
   void expect_refusal(const std::string& arguments, const testing::Matcher<std::string>& line,
                       const std::string& before = "") const;
 
-  // Every file below the folder with its size and time, hidden ones too.
+  // Returns every file below the folder, hidden ones too, with size and time.
   std::map<std::string, std::string> listing() const;
 
   TemporaryFolder folder_;

@@ -1,4 +1,5 @@
-// bake --target-error through the binary: what it chose and reached is said, and what contradicts it refused.
+// `bake --target-error` through the real binary: it states its choice and the error reached, and refuses
+// contradictions.
 #include "cli/run_hemibake.h"
 
 namespace hemibake {
@@ -16,7 +17,7 @@ TEST_F(TargetErrorOption, ChoosesAndStatesWhatItReached) {
   EXPECT_EQ(json["rays"], json["choice"]["rays"]);
   EXPECT_EQ(json["bounces"], json["choice"]["bounces"]);
   EXPECT_EQ(json["target_error"], 0.01);
-  // A sample of a quarter of a small map: known to a third or so.
+  // A sample of a quarter of a small map knows the error to about a third.
   EXPECT_LT(json["reached_error_ao"].get<double>(), 0.014);
   EXPECT_LT(json["reached_error_albedo_0.5"].get<double>(), 0.014);
   EXPECT_GT(json["reached_error_ao"].get<double>(), 0.001);

@@ -1,4 +1,4 @@
-// hemibake trade through the binary: what it writes, that it goes on where it was stopped, what it refuses.
+// `hemibake trade` through the real binary: its files, resuming after a stop, refusals.
 #include <fmt/format.h>
 
 #include <sstream>
@@ -52,7 +52,7 @@ TEST_F(Trade, GoesOnWhereItWas) {
   study();
   const auto runs = read_json(folder_ / "study/trade.json")["runs"];
   const std::string first = read_bytes(folder_ / "study/trade.json");
-  // CPU seconds are measured: only records can give the same ones again.
+  // CPU seconds are measured, so only records can repeat them.
   EXPECT_THAT(study(), HasSubstr(fmt::format("{0} runs, {0} of them on record", runs.size() + 1)));
   EXPECT_EQ(read_bytes(folder_ / "study/trade.json"), first);
 
@@ -85,7 +85,7 @@ TEST_F(Trade, StopsCleanlyAndGoesOn) {
       folder_.path().string(), HEMIBAKE_BINARY));
   EXPECT_EQ(stopped.exit_code, 130);
   EXPECT_EQ(stopped.standard_error, "hemibake: interrupted, no file was left half written\n");
-  // The reference alone takes longer: nothing came of it, not even the folder.
+  // The reference alone takes longer than the limit: not even the folder is made.
   EXPECT_FALSE(std::filesystem::exists(folder_ / "large"));
 }
 
