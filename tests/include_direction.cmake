@@ -17,7 +17,7 @@ endforeach()
 set(third_party
   "embree3/:tracers/embree/" "OpenImageIO/:io/" "OpenEXR/:io/" "Imath/:io/" "hdf5:io/" "openssl/:io/" "png.h:io/"
   "zlib.h:io/" "ceres/:fitting/" "Eigen/:fitting/" "tbb/:core/" "boost/:core/" "hwy/:tracers/slice/,transport/"
-  "CLI/:cli/,main.cpp")
+  "CLI/:cli/options/")
 
 set(errors "")
 file(GLOB_RECURSE sources RELATIVE ${SOURCE_DIR}/src ${SOURCE_DIR}/src/*.h ${SOURCE_DIR}/src/*.cpp)
