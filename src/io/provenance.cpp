@@ -114,8 +114,8 @@ std::string sha256_of_file(const std::filesystem::path& path) {
 
 std::string valid_utf8(std::string_view text) {
   const std::string dumped =
-      nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  return nlohmann::json::parse(dumped).get<std::string>();
+      nlohmann::ordered_json(text).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return nlohmann::ordered_json::parse(dumped).get<std::string>();
 }
 
 }  // namespace hemibake

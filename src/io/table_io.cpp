@@ -69,9 +69,9 @@ std::optional<double> parse_cell(std::string_view cell, const std::string& place
   double value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value))
-    throw InputError(fmt::format(
-        "{}: {} is not usable, expected a finite number or nothing", place,
-        nlohmann::json(cell.substr(0, 40)).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)));
+    throw InputError(fmt::format("{}: {} is not usable, expected a finite number or nothing", place,
+                                 nlohmann::ordered_json(cell.substr(0, 40))
+                                     .dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace)));
   return value;
 }
 
