@@ -3,7 +3,7 @@ cmake_policy(VERSION 3.25)
 # cmake -DSOURCE_DIR=… -P include_direction.cmake
 
 # From the top down; a folder includes itself and what stands after it.
-set(order cli report trade io model fitting curves estimators transport tracers sampling surface core)
+set(order cli report trade io model fitting curves estimators transport tracers surface sampling core)
 set(forbidden_pairs "estimators>tracers" "estimators>transport" "model>fitting")
 
 # Header prefix and the folders (between commas) that may include it; GLM goes everywhere.

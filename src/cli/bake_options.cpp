@@ -201,8 +201,8 @@ void apply_published_preset(const CLI::App& app, BakeOptions& options) {
   const auto set = [&app](const char* name, auto& option, const auto& value) {
     if (app.get_option(name)->count() == 0) option = value;
   };
-  const MarchOptions march = published_march();
-  const FilterOptions filter = published_filter();
+  const MarchOptions march = mayaux2018_march();
+  const FilterOptions filter = mayaux2018_filter();
   set("--tracer", options.tracer, "march");
   set("--rays", options.rays, march.rays);
   set("--cone", options.cone_degrees, march.cone_degrees);
@@ -300,7 +300,7 @@ SliceOptions slice_options(const BakeOptions& options) {
 
 FilterOptions filter_options(const BakeOptions& options) {
   return {options.filter_radius, options.filter_tolerance,
-          options.filter_sum == "published" ? FilterSum::kPublished : FilterSum::kAll};
+          options.filter_sum == "published" ? FilterSum::kMayaux2018 : FilterSum::kAll};
 }
 
 MarchOptions march_options(const BakeOptions& options) {
@@ -310,9 +310,9 @@ MarchOptions march_options(const BakeOptions& options) {
   if (options.max_distance_m) march.max_distance_m = *options.max_distance_m;
   march.max_steps = options.max_steps;
   march.lift_percent = options.lift_percent;
-  march.ray_set = options.ray_set == "published" ? MarchRays::kPublished : MarchRays::kRotated;
-  march.weights = options.normalize == "published" ? MarchWeights::kPublished : MarchWeights::kExact;
-  march.lookup = options.lookup == "published" ? MarchLookup::kPublished : MarchLookup::kBilinear;
+  march.ray_set = options.ray_set == "published" ? MarchRays::kMayaux2018 : MarchRays::kRotated;
+  march.weights = options.normalize == "published" ? MarchWeights::kMayaux2018 : MarchWeights::kExact;
+  march.lookup = options.lookup == "published" ? MarchLookup::kMayaux2018 : MarchLookup::kBilinear;
   march.seed = options.seed;
   march.amplitude_m = options.amplitude_m;
   return march;

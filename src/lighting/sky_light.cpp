@@ -89,10 +89,7 @@ std::vector<glm::dvec3> sky_light(const HeightFieldRayCaster& walk, std::span<co
 }
 
 SurfacePoint texel_center(const Surface& surface, size_t texel) {
-  const auto width = static_cast<size_t>(surface.width());
-  return {{static_cast<double>(texel % width), static_cast<double>(texel / width),
-           static_cast<double>(surface.heights_m[texel]) / surface.texel_size_m},
-          glm::dvec3(surface.normals[texel])};
+  return {texel_position_texels(surface, static_cast<uint32_t>(texel)), glm::dvec3(surface.normals[texel])};
 }
 
 // One of the points that a patch looks from; u in the unit square.

@@ -36,16 +36,9 @@ void check_lighting(const Surface& surface, const RefereeLighting& lighting, int
 
 // x, y in texels inside the map, up to one beyond the last texel where it wraps.
 glm::dvec3 albedo_at(const Grid<glm::vec3>& albedo, Edge edge, double x, double y) {
-  const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
-  const double u = x - i, v = y - j;
-  const auto texel = [&](int column, int row) {
-    const bool wrap = edge == Edge::kWrap;
-    return glm::dvec3(
-        albedo(wrap ? wrap_index(column, albedo.width) : std::clamp(column, 0, albedo.width - 1),
-               wrap ? wrap_index(row, albedo.height) : std::clamp(row, 0, albedo.height - 1)));
-  };
-  return (1 - v) * ((1 - u) * texel(i, j) + u * texel(i + 1, j)) +
-         v * ((1 - u) * texel(i, j + 1) + u * texel(i + 1, j + 1));
+  return interpolate_bilinear<double>(x, y, [&](int i, int j) {
+    return glm::dvec3(albedo(wrap_or_clamp(i, albedo.width, edge), wrap_or_clamp(j, albedo.height, edge)));
+  });
 }
 
 // Radiance times albedos along one path; its mean over the cosine-distributed start is E/π.
@@ -70,15 +63,12 @@ std::vector<RefereeIrradiance> referee_lit_texels(const Surface& surface, std::s
   check_lighting(surface, lighting, paths);
   const HeightFieldRayCaster walk(surface);
   const double lift = walk.start_lift(kLiftTexels);
-  const auto width = static_cast<uint32_t>(surface.width());
   std::vector<RefereeIrradiance> results(texels.size());
   Progress progress("refereeing", texels.size(), "texel");
   parallel_for(texels.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t texel = texels[i];
-      const SurfacePoint receiver{
-          {texel % width, texel / width, surface.heights_m[texel] / surface.texel_size_m},
-          glm::dvec3(surface.normals[texel])};
+      const SurfacePoint receiver{texel_position_texels(surface, texel), glm::dvec3(surface.normals[texel])};
       RefereeRandom random(seed, texel, 0);
       std::array<Moments, 3> moments;
       for (int p = 0; p < paths; ++p) {

@@ -46,9 +46,7 @@ void check_options(const RefereeOptions& options) {
 }
 
 SurfacePoint receiver_at(const Surface& surface, uint32_t texel) {
-  const auto width = static_cast<uint32_t>(surface.width());
-  return {{texel % width, texel / width, surface.heights_m[texel] / surface.texel_size_m},
-          glm::dvec3(surface.normals[texel])};
+  return {texel_position_texels(surface, texel), glm::dvec3(surface.normals[texel])};
 }
 
 uint32_t group_count(const RefereeOptions& options) {
