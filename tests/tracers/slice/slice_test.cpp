@@ -10,6 +10,7 @@
 #include "support/maps.h"
 #include "support/patch_means.h"
 #include "support/rows.h"
+#include "support/threads.h"
 #include "surface/facets.h"
 #include "surface/synthetic/analytic.h"
 #include "transport/bounces.h"
@@ -115,12 +116,12 @@ TEST(SliceTracer, SameBytesFromAnyNumberOfThreadsAndOneByOne) {
   EXPECT_EQ(one.patch_direct_over_pi, two.patch_direct_over_pi);
   const auto tracer = make_slice_tracer(surface, options);
   BlockRows stored;
-  for (size_t b = 0; b < one.patches.blocks.size(); ++b) {
-    EXPECT_EQ(one.patches.blocks[b].packed, two.patches.blocks[b].packed);
+  for (size_t b = 0; b < one.patch_form_factors.blocks.size(); ++b) {
+    EXPECT_EQ(one.patch_form_factors.blocks[b].packed, two.patch_form_factors.blocks[b].packed);
   }
   for (uint32_t facet = 0; facet < tracer->patch_set().count; facet += 13) {
     const Row row = patch_row(*tracer, facet);
-    unpack_block(one.patches.blocks[facet / FormFactorMatrix::kRowsPerBlock], stored);
+    unpack_block(one.patch_form_factors.blocks[facet / FormFactorMatrix::kRowsPerBlock], stored);
     float sum = 0;
     for (const FormFactor& link : row.links) sum += link.weight;
     // Packing takes less than a quantum of a weight (transport/links/form_factors.h), and drops form factors
@@ -129,7 +130,7 @@ TEST(SliceTracer, SameBytesFromAnyNumberOfThreadsAndOneByOne) {
     uint32_t at = stored.row_begin[facet % FormFactorMatrix::kRowsPerBlock];
     for (const FormFactor& link : row.links) {
       const bool kept = at < stored.row_begin[facet % FormFactorMatrix::kRowsPerBlock + 1] &&
-                        stored.patches[at] == link.patch;
+                        stored.columns[at] == link.patch;
       ASSERT_NEAR(link.weight, kept ? stored.weights[at++] : 0, quantum);
     }
     EXPECT_EQ(at, stored.row_begin[facet % FormFactorMatrix::kRowsPerBlock + 1]);
