@@ -47,8 +47,8 @@ void apply_mayaux2018(MapSettings& map, BakeSettings& settings, const IsGiven& g
   const auto set = [&given](const char* name, auto& setting, const auto& value) {
     if (!given(name)) setting = value;
   };
-  const MarchOptions march = published_march();
-  const FilterOptions filter = published_filter();
+  const MarchOptions march = mayaux2018_march();
+  const FilterOptions filter = mayaux2018_filter();
   set("tracer", settings.tracer, TracerKind::kMarch);
   set("rays", settings.rays, march.rays);
   set("cone", settings.cone_degrees, march.cone_degrees);

@@ -1,6 +1,7 @@
 // A width × height array in row-major order, row 0 on top.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -26,10 +27,19 @@ struct Grid {
   const T& operator[](size_t i) const { return values[i]; }
 };
 
-// i modulo n in 0..n-1, also for negative i.
+// Returns i modulo n in 0..n-1, also for negative i.
 inline int wrap_index(int i, int n) {
   const int r = i % n;
   return r < 0 ? r + n : r;
+}
+
+// Returns at(column, row) interpolated bilinearly at (x, y), samples at whole numbers; weights are of type T.
+template <class T, class At>
+auto interpolate_bilinear(double x, double y, const At& at) {
+  const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
+  const T u = static_cast<T>(x - i), v = static_cast<T>(y - j);
+  return (1 - v) * ((1 - u) * at(i, j) + u * at(i + 1, j)) +
+         v * ((1 - u) * at(i, j + 1) + u * at(i + 1, j + 1));
 }
 
 }  // namespace hemibake

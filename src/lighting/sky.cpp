@@ -59,14 +59,9 @@ glm::dvec3 lat_long_radiance(const Grid<glm::vec3>& map, const glm::dvec3& d) {
   const double azimuth_share = std::atan2(d.x, -d.y) / (2 * kPi);
   const double column = azimuth_share * map.width - 0.5;
   const double row = std::acos(std::clamp(d.z, -1.0, 1.0)) / kPi * map.height - 0.5;
-  const double left = std::floor(column), upper = std::floor(row);
-  const auto at = [&](int x, int y) {
+  return interpolate_bilinear<double>(column, row, [&](int x, int y) {
     return glm::dvec3(map(wrap_index(x, map.width), std::clamp(y, 0, map.height - 1)));
-  };
-  const int x = static_cast<int>(left), y = static_cast<int>(upper);
-  const double u = column - left, v = row - upper;
-  return (1 - v) * ((1 - u) * at(x, y) + u * at(x + 1, y)) +
-         v * ((1 - u) * at(x, y + 1) + u * at(x + 1, y + 1));
+  });
 }
 
 SkyHarmonics project_to_harmonics(const Grid<glm::vec3>& map) {

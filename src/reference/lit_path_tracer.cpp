@@ -37,16 +37,9 @@ void check_lighting(const Surface& surface, const RefereeLighting& lighting, int
 // Interpolates the albedo at x, y in texels inside the map, up to one beyond the last texel of a wrapping
 // one.
 glm::dvec3 albedo_at(const Grid<glm::vec3>& albedo, Edge edge, double x, double y) {
-  const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
-  const double u = x - i, v = y - j;
-  const auto texel = [&](int column, int row) {
-    const bool wrap = edge == Edge::kWrap;
-    return glm::dvec3(
-        albedo(wrap ? wrap_index(column, albedo.width) : std::clamp(column, 0, albedo.width - 1),
-               wrap ? wrap_index(row, albedo.height) : std::clamp(row, 0, albedo.height - 1)));
-  };
-  return (1 - v) * ((1 - u) * texel(i, j) + u * texel(i + 1, j)) +
-         v * ((1 - u) * texel(i, j + 1) + u * texel(i + 1, j + 1));
+  return interpolate_bilinear<double>(x, y, [&](int i, int j) {
+    return glm::dvec3(albedo(wrap_or_clamp(i, albedo.width, edge), wrap_or_clamp(j, albedo.height, edge)));
+  });
 }
 
 // Returns radiance times albedos along one path. Its mean over cosine-distributed paths is E/π.

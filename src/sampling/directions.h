@@ -1,4 +1,5 @@
-// Sets of directions over the hemisphere with weights that make flat open ground exactly α = 1 and E₀ = π.
+// Makes sets of directions over the hemisphere, weighted so that flat open ground has exactly α = 1 and E₀ =
+// π.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -6,7 +7,7 @@
 
 namespace hemibake {
 
-// How directions are spread: equal solid angles, or equal shares of irradiance.
+// Spread of directions: equal solid angles, or equal shares of irradiance.
 enum class DirectionSet { kUniform, kCosine };
 
 struct WeightedDirection {
@@ -15,8 +16,8 @@ struct WeightedDirection {
   double cosine_weight;   // share of E₀/π; all sum to 1
 };
 
-// Hammersley points ((i+½)/count, radical inverse) warped into the cone about the normal with full aperture
-// `cone_degrees` (0..180], count ≥ 1. A set is turned about the normal by each receiver's own angle.
+// Returns Hammersley points ((i+½)/count, radical inverse) warped into a cone about the normal.
+// count: ≥ 1. cone_degrees: full aperture, (0..180]. Each receiver rotates the set by an angle of its own.
 std::vector<WeightedDirection> make_directions(DirectionSet set, int count, double cone_degrees);
 
 }  // namespace hemibake

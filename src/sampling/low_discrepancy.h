@@ -7,11 +7,16 @@
 
 namespace hemibake {
 
-// Digits of `index` in `base` mirrored about the point: 0..1, below 1.
-double radical_inverse(uint32_t base, uint32_t index);
+// Returns the digits of `index` in `base` mirrored about the point, in [0, 1).
+inline double radical_inverse(uint32_t base, uint32_t index) {
+  const double digit_value = 1.0 / base;
+  double scale = digit_value, result = 0;
+  for (; index > 0; index /= base, scale *= digit_value) result += scale * (index % base);
+  return result;
+}
 
-// 64 well-mixed bits of (seed, stream, index): the only source of randomness, so that every number can be had
-// again from what it is for.
+// Returns 64 well-mixed bits of (seed, stream, index). Every random number is one of these, so that it can be
+// had again from its purpose.
 inline uint64_t mix_bits(uint64_t seed, uint64_t stream, uint64_t index) {
   // SplitMix64 finaliser (Steele, Lea, Flood 2014), applied per word.
   const auto finalise = [](uint64_t z) {
@@ -23,10 +28,10 @@ inline uint64_t mix_bits(uint64_t seed, uint64_t stream, uint64_t index) {
                   0x9e3779b97f4a7c15ull * (index + 1));
 }
 
-// Uniform in [0, 1) from the upper 53 bits.
+// Returns a number uniform in [0, 1) from the upper 53 bits.
 inline double unit_interval(uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
-// u shifted round the unit interval by `shift`; both in [0, 1).
+// Returns u shifted round the unit interval by `shift`; both in [0, 1).
 inline double cranley_patterson_rotate(double u, double shift) {
   const double sum = u + shift;
   return sum >= 1 ? sum - 1 : sum;

@@ -43,7 +43,7 @@ glm::dvec2 facet_coordinates(const Surface& surface, uint32_t facet, glm::dvec2 
   const FacetCorners corners = facet_corners(surface, facet);
   const double sign = facet % 2 == 0 ? 1 : -1;
   glm::dvec2 offset = position_texels - glm::dvec2(corners.texel[0]);
-  // To the copy whose cell has its middle nearest.
+  // From the copy of the map whose cell has its middle nearest.
   const glm::dvec2 size(surface.width(), surface.height());
   if (surface.edge == Edge::kWrap) offset -= size * glm::round((offset - 0.5 * sign) / size);
   return sign * offset;

@@ -20,24 +20,27 @@ struct FacetCorners {
   std::array<glm::ivec2, 3> texel;  // [0] is the right-angled corner
 };
 
+// Returns the number of facets.
 uint32_t facet_count(const Surface& surface);
-uint32_t facet_columns(const Surface& surface);  // cells in a row
+// Returns the number of cells in a row.
+uint32_t facet_columns(const Surface& surface);
 
+// Returns the corners of a facet.
 FacetCorners facet_corners(const Surface& surface, uint32_t facet);
 
-// Corner positions in units of texels: x = i, y = j, z = height / texel size (unwrapped).
+// Returns the corner positions in units of texels: x = i, y = j, z = height / texel size (unwrapped).
 std::array<glm::dvec3, 3> facet_positions_texels(const Surface& surface, uint32_t facet);
 
-// Barycentric coordinates (of corners 1 and 2) as a position in texels, not wrapped.
+// Returns the position of a facet's point in texels, not wrapped. uv: barycentric, of corners 1 and 2.
 glm::dvec2 facet_point_texels(const Surface& surface, uint32_t facet, glm::dvec2 uv);
 
-// The other way round, from a position on any copy of the map; beyond 0..1 where it is not on the facet.
+// Returns the barycentric coordinates of a position on any copy of the map; outside 0..1 off the facet.
 glm::dvec2 facet_coordinates(const Surface& surface, uint32_t facet, glm::dvec2 position_texels);
 
-// Unit normal, z > 0.
+// Returns the unit normal of a facet, z > 0.
 glm::dvec3 facet_normal(const Surface& surface, uint32_t facet);
 
-// Area of the facet over the area of its shadow on the ground (≥ 1): 1 / normal.z.
+// Returns the area of a facet over the area of its shadow on the ground: 1 / normal.z ≥ 1.
 double facet_area_ratio(const Surface& surface, uint32_t facet);
 
 }  // namespace hemibake

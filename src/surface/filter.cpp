@@ -48,26 +48,20 @@ void check(const FilterOptions& options) {
 
 }  // namespace
 
-FilterOptions published_filter() { return {1, 0.2, FilterSum::kPublished}; }
+FilterOptions mayaux2018_filter() { return {1, 0.2, FilterSum::kMayaux2018}; }
 
 Grid<float> bilateral_filter(const Grid<float>& heights, const FilterOptions& options, Edge edge) {
   check(options);
   if (options.radius == 0) return heights;
   const std::vector<Tap> taps = make_taps(options);
   const int width = heights.width, height = heights.height;
-  const bool wrap = edge == Edge::kWrap;
   Grid<float> filtered(width, height);
   const auto filter_texel = [&](int x, int y) {
     const double own = heights(x, y);
     double sum = 0, weight_sum = 0;
     for (const Tap& tap : taps) {
-      int i = x + tap.dx, j = y + tap.dy;
-      if (wrap) {
-        i = wrap_index(i, width);
-        j = wrap_index(j, height);
-      } else if (i < 0 || j < 0 || i >= width || j >= height) {
-        continue;
-      }
+      const int i = wrap_index(x + tap.dx, width), j = wrap_index(y + tap.dy, height);
+      if (edge == Edge::kOpen && (i != x + tap.dx || j != y + tap.dy)) continue;
       const double difference = (heights(i, j) - own) / options.tolerance;
       const double weight = tap.weight * std::exp(-0.5 * difference * difference);
       // The texel's own tap has weight 1, so that weight_sum is never 0; differences add up without

@@ -1,5 +1,5 @@
-// Bilateral filter of a height map: smooths noise, keeps edges. The published experiment runs it before it
-// marches (Mayaux 2018); Tomasi & Manduchi, "Bilateral Filtering for Gray and Color Images", ICCV 1998.
+// Smooths noise of a height map and keeps edges: bilateral filter (Tomasi, Manduchi, "Bilateral Filtering for
+// Gray and Color Images", ICCV 1998). The experiment of Mayaux 2018 runs it before it marches.
 #pragma once
 
 #include "core/grid.h"
@@ -7,15 +7,14 @@
 
 namespace hemibake {
 
-// Which samples of the kernel are added up.
+// Selects the samples of the kernel that are summed.
 enum class FilterSum {
   kAll,
-  // What the published shader adds up. It halves its kernel step by step, but the last step takes the first
-  // four partial sums of a row where a 2 × 2 block is left: samples at odd row offsets are lost, and in every
-  // fourth row those at column offsets 2 and 3 (modulo 4) count twice. At a radius of 1 texel that leaves the
-  // texel itself, its right neighbour, and its left neighbour twice. The published curves show it
-  // (tests/published/).
-  kPublished,
+  // As the shader of 2018. It halves its kernel step by step, but the last step takes the first four partial
+  // sums of a row instead of a 2 × 2 block: samples at odd row offsets are lost, and in every fourth row
+  // those at column offsets 2 and 3 (modulo 4) count twice. At a radius of 1 texel that leaves the texel
+  // itself, its right neighbour, and its left neighbour twice. The curves of 2018 show it (tests/published/).
+  kMayaux2018,
 };
 
 struct FilterOptions {
@@ -24,13 +23,13 @@ struct FilterOptions {
   FilterSum sum = FilterSum::kAll;
 };
 
-// Radius 1 texel, tolerance 0.2, summed as published.
-FilterOptions published_filter();
+// Returns the settings of 2018: radius 1 texel, tolerance 0.2, kMayaux2018.
+FilterOptions mayaux2018_filter();
 
-// The mean of the heights around each texel, a neighbour at distance d and height difference Δh weighted by
-// exp(−½ d²/(radius/3)²) · exp(−½ Δh²/tolerance²), out to 2 · radius (weight 2·10⁻⁸). Beyond an open edge is
-// nothing. heights: finite height-map values, before make_surface. Throws InputError for options out of
-// range.
+// Returns the weighted mean of the heights around each texel: a neighbour at distance d with height
+// difference Δh weighs exp(−½ d²/(radius/3)²) · exp(−½ Δh²/tolerance²), out to 2 · radius (weight 2·10⁻⁸).
+// Beyond an open edge is nothing. heights: finite height-map values, before make_surface. Throws InputError
+// for options out of range.
 Grid<float> bilateral_filter(const Grid<float>& heights, const FilterOptions& options, Edge edge);
 
 }  // namespace hemibake

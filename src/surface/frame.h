@@ -14,7 +14,8 @@ struct Frame {
   }
 };
 
-// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017: Frisvad's frame without its pole.
+// Returns a frame about a unit vector: Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1),
+// 2017: Frisvad's frame without its pole.
 inline Frame frame_about(const glm::dvec3& n) {
   const double sign = std::copysign(1.0, n.z);
   const double a = -1.0 / (sign + n.z);
@@ -22,7 +23,7 @@ inline Frame frame_about(const glm::dvec3& n) {
   return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
 }
 
-// The frame turned about its normal by `angle` radians.
+// Returns the frame rotated about its normal by `angle` radians.
 inline Frame rotated(const Frame& frame, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * frame.tangent + s * frame.bitangent, c * frame.bitangent - s * frame.tangent, frame.normal};

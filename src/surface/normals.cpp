@@ -12,7 +12,7 @@
 namespace hemibake {
 namespace {
 
-// Slope of the heights along one axis: index i of n, value(i) in metres.
+// Returns the slope of the heights along one axis. i: index of n. value(i): height, metres.
 template <class Value>
 double central_slope(int i, int n, Edge edge, double texel_size_m, const Value& value) {
   if (edge == Edge::kWrap)

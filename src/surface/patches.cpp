@@ -13,14 +13,12 @@
 namespace hemibake {
 namespace {
 
-// FormFactorMatrix keep indices of 32 bits; the highest bit is left to how they are stored.
+// Form-factor matrices keep indices of 32 bits; their storage uses the highest bit.
 constexpr uint64_t kMaxPatches = uint64_t{1} << 31;
 
-// Size of the copy of the facet a node looks from, over the facet. Larger ones average away what nodes are
-// for: at the bottom of a pit they look from further up. Measured against the referee, 20 bounces at albedo 1
-// where AO is below 0.1: WallHeight +8 % at 0.025, +3 % at 0.0125, −1 % at 0.005, bricks +4 % at 0.025 and
-// +0.5 % at 0.01; the second bounce of all bricks +0.4 and +0.2 %. Smaller ones see more of each other in
-// deep folds, which take longer to converge.
+// Size of the copy of the facet that a node's rays start in, over the facet. In larger copies nodes at the
+// bottom of a pit look from further up; in smaller ones nodes in deep folds see more of each other, and their
+// light takes longer to converge.
 constexpr double kNodeSize = 0.01;
 
 double longest_edge_texels(const Surface& surface, uint32_t facet) {
@@ -57,36 +55,32 @@ uint32_t patches_of_half(const PatchRun& run, uint32_t half) {
   return kCoarseNodes * run.cells + (kFineNodes - kCoarseNodes) * bits_in(run.fine[half]);
 }
 
-// From the first patch of the half to that of the node.
+// Returns the offset of a node's first patch from that of its half.
 uint32_t begin_of_node(const PatchRun& run, uint32_t half, uint32_t node) {
   if (node < kCoarseNodes) return node * run.cells;
   return kCoarseNodes * run.cells + (node - kCoarseNodes) * bits_in(run.fine[half]);
 }
 
-uint32_t rows_of_tile(const PatchSet& patches, uint32_t first_row) {
-  return std::min(kTileRows, patches.cell_rows - first_row);
+uint32_t rows_of_tile(const PatchSet& patch_set, uint32_t first_row) {
+  return std::min(kTileRows, patch_set.cell_rows - first_row);
 }
 
-// The run that begins at cell `column` of a row. No division: every link of a bake asks for one.
-PatchRun run_at(const PatchSet& patches, uint32_t row, uint32_t column) {
+// Returns the run that begins at cell `column` of a row. Without division: every form factor asks for one.
+PatchRun run_at(const PatchSet& patch_set, uint32_t row, uint32_t column) {
   const uint32_t row_in_tile = row % kTileRows, first_row = row - row_in_tile;
-  const uint32_t run =
-      first_row * patches.runs_in_row + column / kRunCells * rows_of_tile(patches, first_row) + row_in_tile;
-  PatchRun result;
-  result.first = patches.first[run];
-  result.first_cell = row * patches.columns + column;
-  result.cells = std::min(kRunCells, patches.columns - column);
-  result.fine = patches.fine[run];
-  return result;
+  const uint32_t run = first_row * patch_set.runs_in_row +
+                       column / kRunCells * rows_of_tile(patch_set, first_row) + row_in_tile;
+  return {patch_set.first[run], row * patch_set.columns + column,
+          std::min(kRunCells, patch_set.columns - column), patch_set.fine[run]};
 }
 
-// The run that patch `patch` is in.
-PatchRun run_of_patch(const PatchSet& patches, uint32_t patch) {
-  const auto after = std::upper_bound(patches.first.begin(), patches.first.end(), patch);
-  return patch_run(patches, static_cast<uint32_t>(after - patches.first.begin() - 1));
+// Returns the run that a patch is in.
+PatchRun run_of_patch(const PatchSet& patch_set, uint32_t patch) {
+  const auto after = std::upper_bound(patch_set.first.begin(), patch_set.first.end(), patch);
+  return patch_run(patch_set, static_cast<uint32_t>(after - patch_set.first.begin() - 1));
 }
 
-// Where light is known next to a point of a facet: places of nodes in units of 1/k, with their shares.
+// Share of a node in the light at a point of a facet. a, b: column and row of the node, in units of 1/k.
 struct NodeShare {
   int a, b;
   double share;
@@ -96,8 +90,8 @@ std::array<NodeShare, 3> node_shares(int k, glm::dvec2 uv) {
   const double u = std::clamp(uv.x, 0.0, 1.0) * k, v = std::clamp(uv.y, 0.0, 1.0) * k;
   const int a = std::min(static_cast<int>(u), k - 1), b = std::min(static_cast<int>(v), k - 1 - a);
   const double fu = u - a, fv = std::min(v - b, 1.0);
-  // The half of the little square at (a, b) that is a triangle like the facet, or the other way round. On the
-  // facet's long side there is only the first kind, whatever fu + fv rounds to.
+  // In the little square at (a, b), a triangle like the facet, or one the other way round. Along the facet's
+  // long side there is only the first kind, whatever fu + fv rounds to.
   if (fu + fv <= 1 || a + b == k - 1) {
     const double share_u = std::min(fu, 1.0), share_v = std::min(fv, 1 - share_u);
     return {{{a + 1, b, share_u}, {a, b + 1, share_v}, {a, b, 1 - share_u - share_v}}};
@@ -115,42 +109,42 @@ struct FacetInRun {
   }
 };
 
-FacetInRun facet_in_run(const PatchSet& patches, uint32_t facet) {
-  const uint32_t cell = facet / 2, row = cell / patches.columns, column = cell - row * patches.columns;
+FacetInRun facet_in_run(const PatchSet& patch_set, uint32_t facet) {
+  const uint32_t cell = facet / 2, row = cell / patch_set.columns, column = cell - row * patch_set.columns;
   const uint32_t cell_in_run = column % kRunCells;
-  return {run_at(patches, row, column - cell_in_run), facet % 2, cell_in_run};
+  return {run_at(patch_set, row, column - cell_in_run), facet % 2, cell_in_run};
 }
 
 }  // namespace
 
 PatchSet make_patches(const Surface& surface, PatchKind kind) {
-  PatchSet patches;
-  patches.kind = kind;
+  PatchSet patch_set;
+  patch_set.kind = kind;
   if (kind == PatchKind::kTexels) {
-    patches.count = surface.texel_count();
-    return patches;
+    patch_set.count = surface.texel_count();
+    return patch_set;
   }
-  patches.columns = facet_columns(surface);
-  patches.runs_in_row = (patches.columns + kRunCells - 1) / kRunCells;
-  patches.cell_rows = patches.columns == 0 ? 0 : facet_count(surface) / 2 / patches.columns;
+  patch_set.columns = facet_columns(surface);
+  patch_set.runs_in_row = (patch_set.columns + kRunCells - 1) / kRunCells;
+  patch_set.cell_rows = patch_set.columns == 0 ? 0 : facet_count(surface) / 2 / patch_set.columns;
   uint64_t count = 0;
-  for (uint32_t first_row = 0; first_row < patches.cell_rows; first_row += kTileRows)
-    for (uint32_t column = 0; column < patches.columns; column += kRunCells) {
-      const uint32_t cells = std::min(kRunCells, patches.columns - column);
-      for (uint32_t row = first_row; row < first_row + rows_of_tile(patches, first_row); ++row) {
-        PatchRun run{static_cast<uint32_t>(count), row * patches.columns + column, cells, {}};
+  for (uint32_t first_row = 0; first_row < patch_set.cell_rows; first_row += kTileRows)
+    for (uint32_t column = 0; column < patch_set.columns; column += kRunCells) {
+      const uint32_t cells = std::min(kRunCells, patch_set.columns - column);
+      for (uint32_t row = first_row; row < first_row + rows_of_tile(patch_set, first_row); ++row) {
+        PatchRun run{static_cast<uint32_t>(count), row * patch_set.columns + column, cells, {}};
         run.fine = fine_facets(surface, run.first_cell, cells);
-        patches.first.push_back(run.first);
-        patches.fine.push_back(run.fine);
+        patch_set.first.push_back(run.first);
+        patch_set.fine.push_back(run.fine);
         count += patches_of_half(run, 0) + patches_of_half(run, 1);
         if (count > kMaxPatches)
           throw InputError(
               fmt::format("more than {} patches, expected a smaller map, or texels as patches", kMaxPatches));
       }
     }
-  patches.count = static_cast<uint32_t>(count);
-  patches.first.push_back(patches.count);
-  return patches;
+  patch_set.count = static_cast<uint32_t>(count);
+  patch_set.first.push_back(patch_set.count);
+  return patch_set;
 }
 
 glm::dvec2 node_uv(uint32_t node) {
@@ -168,15 +162,15 @@ uint32_t PatchRun::patch(uint32_t half, uint32_t node, uint32_t cell_in_run) con
          bits_in(cells_with(half, node) & ((1u << cell_in_run) - 1));
 }
 
-PatchRun patch_run(const PatchSet& patches, uint32_t run) {
-  const uint32_t first_row = run / (kTileRows * patches.runs_in_row) * kTileRows;
-  const uint32_t in_row_of_tiles = run - first_row * patches.runs_in_row,
-                 rows = rows_of_tile(patches, first_row);
-  return run_at(patches, first_row + in_row_of_tiles % rows, in_row_of_tiles / rows * kRunCells);
+PatchRun patch_run(const PatchSet& patch_set, uint32_t run) {
+  const uint32_t first_row = run / (kTileRows * patch_set.runs_in_row) * kTileRows;
+  const uint32_t in_row_of_tiles = run - first_row * patch_set.runs_in_row,
+                 rows = rows_of_tile(patch_set, first_row);
+  return run_at(patch_set, first_row + in_row_of_tiles % rows, in_row_of_tiles / rows * kRunCells);
 }
 
-NodeGroup group_of_patch(const PatchSet& patches, uint32_t patch) {
-  NodeGroup group{run_of_patch(patches, patch), 0, 0, 0};
+NodeGroup group_of_patch(const PatchSet& patch_set, uint32_t patch) {
+  NodeGroup group{run_of_patch(patch_set, patch), 0, 0, 0};
   const PatchRun& run = group.run;
   uint32_t begin = run.first;
   if (const uint32_t first_half = patches_of_half(run, 0); patch - begin >= first_half) {
@@ -190,8 +184,8 @@ NodeGroup group_of_patch(const PatchSet& patches, uint32_t patch) {
   return group;
 }
 
-FacetNode facet_node(const PatchSet& patches, uint32_t patch) {
-  const NodeGroup group = group_of_patch(patches, patch);
+FacetNode facet_node(const PatchSet& patch_set, uint32_t patch) {
+  const NodeGroup group = group_of_patch(patch_set, patch);
   uint32_t cells = group.run.cells_with(group.half, group.node);
   for (uint32_t before = patch - group.first; before > 0; --before) cells &= cells - 1;
   const uint32_t cell = static_cast<uint32_t>(std::countr_zero(cells));
@@ -199,18 +193,18 @@ FacetNode facet_node(const PatchSet& patches, uint32_t patch) {
           group.node};
 }
 
-std::array<PatchShare, 3> patch_shares(const PatchSet& patches, uint32_t facet, glm::dvec2 uv) {
-  const FacetInRun place = facet_in_run(patches, facet);
+std::array<PatchShare, 3> patch_shares(const PatchSet& patch_set, uint32_t facet, glm::dvec2 uv) {
+  const FacetInRun place = facet_in_run(patch_set, facet);
   const std::array<NodeShare, 3> nodes = node_shares(place.k(), uv);
   std::array<PatchShare, 3> shares;
   for (size_t i = 0; i < nodes.size(); ++i) shares[i] = {place.patch(nodes[i]), nodes[i].share};
   return shares;
 }
 
-uint32_t sample_patch(const PatchSet& patches, uint32_t facet, glm::dvec2 uv, double choice) {
-  const FacetInRun place = facet_in_run(patches, facet);
+uint32_t sample_patch(const PatchSet& patch_set, uint32_t facet, glm::dvec2 uv, double u) {
+  const FacetInRun place = facet_in_run(patch_set, facet);
   const std::array<NodeShare, 3> nodes = node_shares(place.k(), uv);
-  const size_t drawn = choice < nodes[0].share ? 0 : choice < nodes[0].share + nodes[1].share ? 1 : 2;
+  const size_t drawn = u < nodes[0].share ? 0 : u < nodes[0].share + nodes[1].share ? 1 : 2;
   return place.patch(nodes[drawn]);
 }
 
@@ -232,17 +226,17 @@ double node_area_share(int k, uint32_t node) {
   return (1 - quadratic_share) * linear + quadratic_share * quadratic;
 }
 
-double patch_area_texels(const Surface& surface, const PatchSet& patches, uint32_t patch) {
-  const FacetNode node = facet_node(patches, patch);
+double patch_area_texels(const Surface& surface, const PatchSet& patch_set, uint32_t patch) {
+  const FacetNode node = facet_node(patch_set, patch);
   return 0.5 * facet_area_ratio(surface, node.facet) * node_area_share(node.subdivision, node.node);
 }
 
-glm::dvec2 patch_position_texels(const Surface& surface, const PatchSet& patches, uint32_t patch) {
-  if (patches.kind == PatchKind::kTexels) {
+glm::dvec2 patch_position_texels(const Surface& surface, const PatchSet& patch_set, uint32_t patch) {
+  if (patch_set.kind == PatchKind::kTexels) {
     const uint32_t width = static_cast<uint32_t>(surface.width());
     return {patch % width, patch / width};
   }
-  const FacetNode node = facet_node(patches, patch);
+  const FacetNode node = facet_node(patch_set, patch);
   return facet_point_texels(surface, node.facet, node_uv(node.node));
 }
 

@@ -1,10 +1,9 @@
-// How a ray over a surface ends.
+// The end of a ray over a surface.
 #pragma once
 
 namespace hemibake {
 
-// kEscaped: to the sky. kHit: on the surface. kTruncated: the tracer stopped following it, and takes it for
-// sky; each tracer says where that is.
+// kEscaped: to the sky. kHit: on the surface. kTruncated: given up at a limit of the tracer, taken for sky.
 enum class RayOutcome { kEscaped, kHit, kTruncated };
 
 }  // namespace hemibake

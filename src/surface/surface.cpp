@@ -59,4 +59,9 @@ double height_range_m(const Surface& surface) {
   return static_cast<double>(*high) - static_cast<double>(*low);
 }
 
+glm::dvec3 texel_position_texels(const Surface& surface, uint32_t texel) {
+  const auto width = static_cast<uint32_t>(surface.width());
+  return {texel % width, texel / width, surface.heights_m[texel] / surface.texel_size_m};
+}
+
 }  // namespace hemibake

@@ -1,8 +1,9 @@
-// The surface of a height map: heights in metres over a grid of texel centres, and the normal light is
+// The surface of a height map: heights in metres over a grid of texel centres, and the normals that light is
 // received about. Frame: x right, y down the image rows, z up; texel (i, j) has its centre at ((i+½)t,
 // (j+½)t).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/vec3.hpp>
 
@@ -10,8 +11,13 @@
 
 namespace hemibake {
 
-// What lies beyond the border: the map again and again, or nothing.
+// The surroundings of the map: kWrap repeats it for ever, kOpen has nothing beyond the border.
 enum class Edge { kWrap, kOpen };
+
+// Returns index i as the edge continues an axis of n texels: modulo n, or the nearest of 0..n-1.
+inline int wrap_or_clamp(int i, int n, Edge edge) {
+  return edge == Edge::kWrap ? wrap_index(i, n) : std::clamp(i, 0, n - 1);
+}
 
 struct Surface {
   Grid<float> heights_m;    // along +z, lowest texel at 0
@@ -24,16 +30,20 @@ struct Surface {
   uint32_t texel_count() const { return static_cast<uint32_t>(heights_m.size()); }
 };
 
-// The largest map the tool takes, texels: patch indices (two facets a texel) stay below 2^31.
+// Largest map taken, texels: patch indices stay below 2^31.
 inline constexpr uint64_t kMaxTexels = uint64_t{1} << 28;
 
+// Makes the surface of a height map, with central-difference normals (surface/normals.h).
 // heights: height-map values (0..1 by convention, any finite value works), at least one texel; open edges
-// need 2 × 2. size_m: metres along the longer side, 10⁻¹² to 10¹². amplitude_m ≥ 0: metres per unit of
-// height. The heights may range over up to 10¹² texel sizes. Normals are the central differences of the
-// heights (surface/normals.h). Throws InputError (without a file name) for what it cannot take.
+// need 2 × 2. They may range over up to 10¹² texel sizes.
+// size_m: along the longer side, 10⁻¹² to 10¹² m. amplitude_m: metres per unit of height, ≥ 0.
+// Throws InputError (without a file name) for values out of these ranges.
 Surface make_surface(Grid<float> heights, double size_m, double amplitude_m, Edge edge);
 
-// Highest minus lowest height, metres.
+// Returns the highest minus the lowest height, metres.
 double height_range_m(const Surface& surface);
+
+// Returns the centre of a texel in units of texels: x = i, y = j, z = height / texel size.
+glm::dvec3 texel_position_texels(const Surface& surface, uint32_t texel);
 
 }  // namespace hemibake

@@ -13,34 +13,33 @@
 
 namespace hemibake {
 
-// Rays of all nodes of a facet over those of a texel: twice this, and the texels' own rays, is what bounces
-// cost over the texels' rays alone.
+// Rays of all nodes of a facet over those of a texel. Bounces cost twice this (two facets a texel), and the
+// texels' own rays.
 inline constexpr double kFacetRays = 0.6;
 
-// Rays of a node at a corner of its facet over those of any other. The texel there sees the corners of the
-// six facets around it from next to it, and their noise with them: the first bounce of rough maps is a fifth
-// more exact than with all nodes alike.
+// Rays of a node at a corner of its facet over those of any other: the texel there sees the corners of six
+// facets from next to it, and their noise with them.
 inline constexpr double kCornerRays = 3;
 
-// Rays of a node of a facet that is cut into k² triangles. Of fewer than eight, or of all where a texel has
-// no more, some in a deep fold would only meet each other and keep their light for ever.
+// Returns the rays of a node of a facet that is cut into k² triangles. rays: of a texel.
+// At least min(rays, 8): with fewer, nodes in deep folds see only each other and keep their light for ever.
 inline int rays_per_node(int rays, int k, uint32_t node) {
   const double rays_of_others = kFacetRays * rays / (node_count(k) - 3 + 3 * kCornerRays);
   const double wanted = (is_corner(node) ? kCornerRays : 1) * rays_of_others;
   return std::max(std::min(rays, 8), static_cast<int>(std::lround(wanted)));
 }
 
-// Nodes that have as many rays as each other, 0 … kNodeKinds − 1: the corners and the others of facets cut
-// alike.
+// Returns the kind of a node, 0 … kNodeKinds − 1: corner or not, of a coarsely or finely cut facet. Nodes of
+// one kind have equally many rays.
 inline constexpr size_t kNodeKinds = 4;
 constexpr size_t node_kind(int k, uint32_t node) {
   return (k == kFineSubdivision ? 2 : 0) + (is_corner(node) ? 1 : 0);
 }
 
-// Steps of the golden ratio: any number of them is spread evenly over the unit interval.
+// Golden-ratio step: any number of steps is spread evenly over the unit interval.
 inline constexpr double kGoldenStep = 0.6180339887498949;
 
-// How a hit becomes links where patches are texels: to the nearest texel, or spread over the four around it.
+// Share of a hit among texels, where they are the patches: the nearest, or the four around it.
 enum class TexelLinks { kNearest, kBilinear };
 
 struct RayOptions {

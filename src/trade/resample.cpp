@@ -13,16 +13,9 @@ namespace {
 // Bilinear at texel coordinates x, y (centres at whole numbers), beyond the border as `edge` says.
 template <class T>
 T interpolate(const Grid<T>& grid, double x, double y, Edge edge) {
-  const auto index = [edge](double at, int count) {
-    const int i = static_cast<int>(at);
-    return edge == Edge::kWrap ? wrap_index(i, count) : std::clamp(i, 0, count - 1);
-  };
-  const double left = std::floor(x), top = std::floor(y);
-  const float u = static_cast<float>(x - left), v = static_cast<float>(y - top);
-  const int x0 = index(left, grid.width), x1 = index(left + 1, grid.width);
-  const int y0 = index(top, grid.height), y1 = index(top + 1, grid.height);
-  return (1 - v) * ((1 - u) * grid(x0, y0) + u * grid(x1, y0)) +
-         v * ((1 - u) * grid(x0, y1) + u * grid(x1, y1));
+  return interpolate_bilinear<float>(x, y, [&](int i, int j) {
+    return grid(wrap_or_clamp(i, grid.width, edge), wrap_or_clamp(j, grid.height, edge));
+  });
 }
 
 // grid, at the centres of width × height texels over the same ground.

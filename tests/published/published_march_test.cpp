@@ -61,7 +61,7 @@ class PublishedMarch : public testing::Test {
   }
 
   MarchOptions preset() const {
-    MarchOptions options = published_march();
+    MarchOptions options = mayaux2018_march();
     options.normal_lengths = normal_map_lengths(encoded_normals_);
     return options;
   }
@@ -91,7 +91,7 @@ class PublishedMarch : public testing::Test {
 // differ by 0.0003.
 TEST_F(PublishedMarch, GivesThePublishedCurves) {
   const double start = process_cpu_seconds();
-  const std::vector<Deviation> found = deviations(curves(published_filter(), preset()));
+  const std::vector<Deviation> found = deviations(curves(mayaux2018_filter(), preset()));
   const double seconds = process_cpu_seconds() - start;
   fmt::print("bounce  rms/pi   max/pi\n");
   for (int b = 0; b <= kBounces; ++b) {

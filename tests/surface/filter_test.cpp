@@ -43,7 +43,7 @@ TEST(Filter, WeighsHeightDifferences) {
 
 // One of the left neighbour, two of the right: a spike shows twice to its right.
 TEST(Filter, PublishedSumDropsOddRowsAndDoublesTheLeftNeighbour) {
-  FilterOptions options = published_filter();
+  FilterOptions options = mayaux2018_filter();
   EXPECT_EQ(options.radius, 1);
   EXPECT_EQ(options.tolerance, 0.2);
   options.tolerance = kInfinity;
@@ -70,7 +70,7 @@ TEST(Filter, WrapsOrStopsAtTheEdge) {
 TEST(Filter, LeavesFlatAndTinyMapsAlone) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 5}, {5, 1}, {3, 2}}) {
     const Grid<float> flat(width, height, 0.3f);
-    for (const FilterSum sum : {FilterSum::kAll, FilterSum::kPublished})
+    for (const FilterSum sum : {FilterSum::kAll, FilterSum::kMayaux2018})
       EXPECT_EQ(bilateral_filter(flat, {16, 0.2, sum}, Edge::kWrap).values, flat.values);
   }
 }

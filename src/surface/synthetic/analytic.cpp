@@ -16,13 +16,9 @@ Grid<float> make_floor(const SyntheticOptions& options, WallGeometry walls) {
 }  // namespace
 
 BowlGeometry bowl_geometry(int width, int height, double angle_rad) {
-  BowlGeometry bowl{};
-  bowl.center_x = width / 2;
-  bowl.center_y = height / 2;
-  bowl.rim_radius = 0.45 * std::min(width, height);
-  bowl.sphere_radius = bowl.rim_radius / std::sin(angle_rad);
-  bowl.depth = bowl.rim_radius * std::tan(angle_rad / 2);
-  return bowl;
+  const double rim_radius = 0.45 * std::min(width, height);
+  return {width / 2, height / 2, rim_radius, rim_radius / std::sin(angle_rad),
+          rim_radius * std::tan(angle_rad / 2)};
 }
 
 GrooveGeometry groove_geometry(int width, double angle_rad) {
@@ -32,11 +28,8 @@ GrooveGeometry groove_geometry(int width, double angle_rad) {
   int period = width;
   for (int even = 2; even < width; even += 2)
     if (width % even == 0 && ratio(even) < ratio(period)) period = even;
-  GrooveGeometry groove{};
-  groove.period = period;
-  groove.wall_width = period / 2;
-  groove.depth = groove.wall_width / std::tan(angle_rad);
-  return groove;
+  const int wall_width = period / 2;
+  return {period, wall_width, wall_width / std::tan(angle_rad)};
 }
 
 WallGeometry canyon_geometry(int width) { return {width / 4 - 1, width - width / 4}; }

@@ -1,4 +1,4 @@
-// The measures of the synthetic maps whose light has a closed form. Lengths are in texels, texel centres are
+// Measures the synthetic maps whose light has a closed form. Lengths are in texels, texel centres are
 // at whole numbers; the heights 0..1 times `depth` texels give the true shape.
 #pragma once
 

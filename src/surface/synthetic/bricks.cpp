@@ -1,5 +1,5 @@
-// A weathered wall in running bond. All lengths and heights are in units of the map's longer side: metres of
-// a wall of one metre, whose relief of about a decimetre is stretched to 0..1 afterwards.
+// Makes a weathered wall in running bond. All lengths and heights are in units of the map's longer side:
+// metres of a wall of one metre, whose relief of about a decimetre is stretched to 0..1 afterwards.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,7 @@ constexpr double kFaceHeight = 0.046;  // mean of the faces above the mean of th
 constexpr double kCornerRadius = 0.008;
 constexpr double kEdgeRounding = 0.009;  // width of the worn edge
 
-// Seeds of everything that varies on its own.
+// Hash streams, one for everything that varies on its own.
 enum class Stream {
   kWarpX,
   kWarpY,
@@ -35,7 +35,7 @@ enum class Stream {
   kChips
 };
 
-struct ShadedScene {
+struct BrickWall {
   Tile tile;
   int columns, courses;
   double highest_frequency;
@@ -52,14 +52,14 @@ struct ShadedScene {
   }
 };
 
-ShadedScene wall_of(const SyntheticOptions& options) {
+BrickWall wall_of(const SyntheticOptions& options) {
   const Tile tile = tile_of(options);
   // An even number of courses, so that the bond goes on where the map repeats.
   return {tile, cells_along(tile.width, 1 / kBrickPitch), 2 * cells_along(tile.height, 0.5 / kCoursePitch),
           highest_frequency(options), options.seed};
 }
 
-// What differs from brick to brick (the chips: from corner to corner).
+// Random traits of a brick (chips: of its corners).
 enum class Trait {
   kTurn,
   kShift,
@@ -83,20 +83,20 @@ struct BrickPoint {
   double half_width, half_height;
   uint64_t bits;  // the brick's own
 
-  // Uniform in [−1, 1).
+  // Returns a number uniform in [−1, 1).
   double random(Trait trait, int corner = 0) const {
     return 2 * hash_unit(bits, static_cast<int64_t>(trait), corner) - 1;
   }
 };
 
-// Where the head joint to the left of brick `column` lies, in columns.
-double head_joint(const ShadedScene& wall, int column, int course) {
+// Returns the position of the head joint to the left of brick `column`, in columns.
+double head_joint(const BrickWall& wall, int column, int course) {
   constexpr double kShift = 0.06;
   return column +
          kShift * (2 * hash_unit(wall.stream(Stream::kJoints), wrap_index(column, wall.columns), course) - 1);
 }
 
-BrickPoint brick_at(const ShadedScene& wall, double x, double y) {
+BrickPoint brick_at(const BrickWall& wall, double x, double y) {
   const double v = y / wall.tile.height * wall.courses;
   const int row = static_cast<int>(std::floor(v));
   const int course = wrap_index(row, wall.courses);
@@ -120,8 +120,9 @@ BrickPoint brick_at(const ShadedScene& wall, double x, double y) {
   return brick;
 }
 
-// Distance from the outline, positive inside: a rounded rectangle, frayed by noise, with bites out of it.
-double outline_distance(const ShadedScene& wall, const BrickPoint& brick, double x, double y) {
+// Returns the distance from the outline, positive inside: a rounded rectangle, frayed by noise, with bites
+// out of it.
+double outline_distance(const BrickWall& wall, const BrickPoint& brick, double x, double y) {
   const double qx = std::abs(brick.x) - (brick.half_width - kCornerRadius);
   const double qy = std::abs(brick.y) - (brick.half_height - kCornerRadius);
   const double outside = std::hypot(std::max(qx, 0.0), std::max(qy, 0.0)) + std::min(std::max(qx, qy), 0.0);
@@ -130,8 +131,8 @@ double outline_distance(const ShadedScene& wall, const BrickPoint& brick, double
   return kCornerRadius - outside + fray - bite;
 }
 
-// How deep the broken-off corners cut below the face (0 where none does).
-double chip_depth(const ShadedScene& wall, const BrickPoint& brick, double x, double y) {
+// Returns the depth of a broken-off corner below the face, 0 off it.
+double chip_depth(const BrickWall& wall, const BrickPoint& brick, double x, double y) {
   const int corner = (brick.x > 0 ? 1 : 0) + (brick.y > 0 ? 2 : 0);
   if (brick.random(Trait::kChip, corner) < 0.2) return 0;
   const double size = 0.015 + 0.035 * std::abs(brick.random(Trait::kChipSize, corner));
@@ -143,7 +144,7 @@ double chip_depth(const ShadedScene& wall, const BrickPoint& brick, double x, do
   return std::max(0.0, size - fracture) * (0.7 + 0.5 * std::abs(brick.random(Trait::kChipSlope, corner)));
 }
 
-double pit_depth(const ShadedScene& wall, double x, double y) {
+double pit_depth(const BrickWall& wall, double x, double y) {
   const Spot spot = nearest_spot(x, y, wall.tile, 40, wall.stream(Stream::kPits));
   if (hash_unit(spot.bits, 1, 0) > 0.25) return 0;
   const double size = hash_unit(spot.bits, 1, 1);
@@ -153,22 +154,22 @@ double pit_depth(const ShadedScene& wall, double x, double y) {
   return t < 1 ? 2 * radius * (1 - std::max(0.0, t)) : 0.0;
 }
 
-// Grit baked into the brick that stands out of the weathered face.
-double grit_height(const ShadedScene& wall, double x, double y) {
+// Returns the height of grit that stands out of the weathered face.
+double grit_height(const BrickWall& wall, double x, double y) {
   const Spot spot = nearest_spot(x, y, wall.tile, 50, wall.stream(Stream::kGrit));
   if (hash_unit(spot.bits, 1, 0) > 0.3) return 0;
   const double radius = 0.003 + 0.005 * hash_unit(spot.bits, 1, 1);
   return 0.7 * std::max(0.0, radius - spot.distance);
 }
 
-// A crack follows the zero line of a noise, on bricks that have one.
-double crack_depth(const ShadedScene& wall, const BrickPoint& brick, double x, double y) {
+// Returns the depth of a crack along the zero line of a noise, on bricks that have one.
+double crack_depth(const BrickWall& wall, const BrickPoint& brick, double x, double y) {
   if (brick.random(Trait::kCrack) < 0.6) return 0;
   const double from_line = std::abs(wall.fractal(x, y, 6, 0.4, Stream::kCracks));
   return 0.009 * (1 - smooth_step(0.0, 0.016, from_line));
 }
 
-double face_height(const ShadedScene& wall, const BrickPoint& brick, double x, double y) {
+double face_height(const BrickWall& wall, const BrickPoint& brick, double x, double y) {
   // Hard-burnt bricks have weathered least: they are smoother, flatter and stand proud.
   const double wear = 0.5 + 0.5 * brick.random(Trait::kWear);
   double height = kFaceHeight + 0.010 * brick.random(Trait::kOffset) - 0.013 * wear;
@@ -183,14 +184,14 @@ double face_height(const ShadedScene& wall, const BrickPoint& brick, double x, d
   return height - pit_depth(wall, x, y) - chip_depth(wall, brick, x, y) - crack_depth(wall, brick, x, y);
 }
 
-double mortar_height(const ShadedScene& wall, double x, double y) {
+double mortar_height(const BrickWall& wall, double x, double y) {
   double height = 0.007 * wall.fractal(x, y, 60, 0.7, Stream::kMortar);
   // Smeared full in places, washed out in others.
   height += 0.036 * smooth_step(0.0, 0.5, wall.fractal(x, y, 7, 0.5, Stream::kSmear));
   return height - 0.034 * smooth_step(0.05, 0.6, wall.fractal(x, y, 24, 0.5, Stream::kHoles));
 }
 
-double wall_height(const ShadedScene& wall, double x, double y) {
+double wall_height(const BrickWall& wall, double x, double y) {
   // Courses that are not drawn with a ruler.
   const double warped_x = x + 0.004 * wall.noise(x, y, 9, Stream::kWarpX);
   const double warped_y = y + 0.005 * wall.noise(x, y, 7, Stream::kWarpY);
@@ -206,7 +207,7 @@ double wall_height(const ShadedScene& wall, double x, double y) {
 }  // namespace
 
 Grid<float> make_bricks(const SyntheticOptions& options) {
-  const ShadedScene wall = wall_of(options);
+  const BrickWall wall = wall_of(options);
   return fill_points(options, [&](double x, double y) { return wall_height(wall, x, y); });
 }
 

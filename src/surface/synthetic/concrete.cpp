@@ -1,5 +1,5 @@
-// Cast concrete: gentle waves from the formwork, the pores that air bubbles left at it, and the grain of the
-// sand. Lengths and heights are in units of the map's longer side.
+// Makes cast concrete: gentle waves from the formwork, the pores that air bubbles left at it, and the grain
+// of the sand. Lengths and heights are in units of the map's longer side.
 #include <algorithm>
 #include <cmath>
 

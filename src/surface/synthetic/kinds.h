@@ -1,4 +1,4 @@
-// The makers behind synthesize(), one per kind. For surface/synthetic*.cpp only.
+// Declares the makers behind synthesize(), one per kind. For surface/synthetic only.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace hemibake {
 
-// options are valid, angle_rad is set for kinds that have an angle. Materials may return any finite range:
-// synthesize stretches it to 0..1.
+// Make the maps of their kinds. options: valid, angle_rad set for kinds that have an angle. Materials may
+// return any finite range: synthesize stretches it to 0..1.
 Grid<float> make_bricks(const SyntheticOptions& options);
 Grid<float> make_shapes(const SyntheticOptions& options);
 Grid<float> make_concrete(const SyntheticOptions& options);
@@ -20,17 +20,18 @@ Grid<float> make_groove(const SyntheticOptions& options);
 Grid<float> make_canyon(const SyntheticOptions& options);
 Grid<float> make_step(const SyntheticOptions& options);
 
+// Returns the shape of the map.
 inline Tile tile_of(const SyntheticOptions& options) {
   const double longer = std::max(options.width, options.height);
   return {options.width / longer, options.height / longer};
 }
 
-// The highest frequency that texels can carry: a lattice cell is two texels.
+// Returns the highest frequency that texels can carry, a lattice cell being two texels.
 inline double highest_frequency(const SyntheticOptions& options) {
   return std::max(options.width, options.height) / 2.0;
 }
 
-// height(i, j) for every texel.
+// Fills a map with height(i, j).
 template <class Height>
 Grid<float> fill_texels(const SyntheticOptions& options, const Height& height) {
   Grid<float> map(options.width, options.height);
@@ -41,7 +42,7 @@ Grid<float> fill_texels(const SyntheticOptions& options, const Height& height) {
   return map;
 }
 
-// height(x, y) at every texel centre, in units of the longer side.
+// Fills a map with height(x, y) at texel centres, in units of the longer side.
 template <class Height>
 Grid<float> fill_points(const SyntheticOptions& options, const Height& height) {
   const double texel = 1.0 / std::max(options.width, options.height);

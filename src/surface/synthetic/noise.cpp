@@ -5,17 +5,12 @@
 #include <limits>
 
 #include "core/grid.h"
+#include "sampling/low_discrepancy.h"
 
 namespace hemibake {
 namespace {
 
-uint64_t mix(uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
-
-// The lattice cell a point lies in and where in the cell, each coordinate in [0, 1).
+// A point in its lattice cell: x, y in [0, 1).
 struct LatticePoint {
   int cell_x, cell_y;
   double x, y;
@@ -27,7 +22,7 @@ LatticePoint lattice_point(double x, double y, Tile tile, int cells_x, int cells
           v - std::floor(v)};
 }
 
-// The hashed gradient of a lattice node times the way from the node to the point.
+// Returns the hashed gradient of a lattice node times the vector from the node to the point.
 double gradient_ramp(uint64_t seed, int node_x, int node_y, double dx, double dy) {
   const uint64_t bits = hash_bits(seed, node_x, node_y);
   constexpr double kHalf32 = 1.0 / (uint64_t{1} << 31);
@@ -45,14 +40,11 @@ int cells_along(double side, double frequency) {
 }
 
 uint64_t hash_bits(uint64_t seed, int64_t x, int64_t y) {
-  constexpr uint64_t kGolden = 0x9e3779b97f4a7c15u;
-  return mix(mix(mix(seed + kGolden) + static_cast<uint64_t>(x) * kGolden) +
-             static_cast<uint64_t>(y) * kGolden + kGolden);
+  // Spreads small x over all bits of the stream.
+  return mix_bits(seed, 0x9e3779b97f4a7c15u * static_cast<uint64_t>(x), static_cast<uint64_t>(y));
 }
 
-double unit_from_bits(uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
-
-double hash_unit(uint64_t seed, int64_t x, int64_t y) { return unit_from_bits(hash_bits(seed, x, y)); }
+double hash_unit(uint64_t seed, int64_t x, int64_t y) { return unit_interval(hash_bits(seed, x, y)); }
 
 double smooth_step(double low, double high, double value) {
   const double t = std::clamp((value - low) / (high - low), 0.0, 1.0);

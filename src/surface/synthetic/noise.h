@@ -1,5 +1,5 @@
-// Hashes and tileable noise for synthetic maps. Everything starts from integer hashes, so that a seed gives
-// the same map on every machine and at any thread count.
+// Makes hashes and tileable noise for synthetic maps. Everything starts from integer hashes, so that a seed
+// gives the same map on every machine and at any thread count.
 #pragma once
 
 #include <cstdint>
@@ -12,25 +12,24 @@ struct Tile {
   double height = 1;  // in (0, 1]
 };
 
-// Cells along one side of a tile: about `frequency` per unit, at least 1.
+// Returns the lattice cells along one side of a tile: about `frequency` per unit, at least 1.
 int cells_along(double side, double frequency);
 
-// 64 well-mixed bits from a seed and two integers (finaliser of SplitMix64; Steele, Lea & Flood 2014).
+// Returns 64 well-mixed bits of a seed and two integers (mix_bits).
 uint64_t hash_bits(uint64_t seed, int64_t x, int64_t y);
 
-// A number in [0, 1) from 64 hashed bits, or from a seed and two integers.
-double unit_from_bits(uint64_t bits);
+// Returns a number in [0, 1) of a seed and two integers.
 double hash_unit(uint64_t seed, int64_t x, int64_t y);
 
-// 0 below `low`, 1 above `high`, the cubic 3t² − 2t³ in between. low < high.
+// Returns 0 below `low`, 1 above `high`, the cubic 3t² − 2t³ in between. low < high.
 double smooth_step(double low, double high, double value);
 
-// Gradient noise (Perlin 2002, quintic fade; gradients uniform in the square [−1, 1]²), about 0, within ±1.
+// Returns gradient noise (Perlin 2002, quintic fade; gradients uniform in the square [−1, 1]²), within ±1.
 // (x, y): any point, in units of the tile's longer side. frequency: lattice cells per unit, rounded so that a
 // whole number fits the tile.
 double tile_noise(double x, double y, Tile tile, double frequency, uint64_t seed);
 
-// Octaves of gradient noise, one per doubling of the frequency.
+// Sums octaves of gradient noise, one per doubling of the frequency.
 struct FractalNoise {
   double frequency = 4;            // of the first octave, cells per unit
   double highest_frequency = 256;  // octaves above this one are left out; at least the first is kept
@@ -39,10 +38,10 @@ struct FractalNoise {
 };
 double fractal_noise(double x, double y, Tile tile, const FractalNoise& noise);
 
-// The nearest of a scattering of round spots, one in every cell of the tile.
+// Returns the nearest of scattered round spots, one in every cell of the tile.
 struct Spot {
   double distance;  // from (x, y) to the centre, units of the longer side
-  uint64_t bits;    // hashed bits that belong to the spot: its size, depth, whatever the caller makes of them
+  uint64_t bits;    // hashed, of the spot: for its size, depth and the like
 };
 Spot nearest_spot(double x, double y, Tile tile, double frequency, uint64_t seed);
 

@@ -1,5 +1,5 @@
-// A geometry test chart: four by four solids on flat ground, each turned by an angle of its own. Lengths and
-// heights are in units of the map's longer side; the tallest solid stands 0.45 high.
+// Makes a geometry test chart: four by four solids on flat ground, each turned by an angle of its own.
+// Lengths and heights are in units of the map's longer side; the tallest solid stands 0.45 high.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -45,7 +45,7 @@ constexpr std::array<Shape, 16> kChart = {{
 
 double elliptic(double squared) { return std::sqrt(std::max(0.0, 1 - squared)); }
 
-// A wall's share of its full height at a distance inside its foot.
+// Returns a wall's share of its full height at a distance inside its foot.
 double upright(double inside) { return std::clamp(inside / kDraft, 0.0, 1.0); }
 
 double height_of(const Shape& shape, double x, double y) {

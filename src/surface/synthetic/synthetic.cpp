@@ -54,7 +54,7 @@ SyntheticOptions checked(SyntheticKind kind, SyntheticOptions options) {
   return options;
 }
 
-// Lowest texel to 0, highest to 1; flat maps to 0.
+// Returns the map with its lowest texel at 0 and its highest at 1; flat maps at 0.
 Grid<float> stretched(Grid<float> map) {
   const auto [lowest, highest] = std::minmax_element(map.values.begin(), map.values.end());
   const double low = *lowest, range = *highest - low;
@@ -68,9 +68,9 @@ double texel_m(const SyntheticOptions& options) { return 1.0 / std::max(options.
 
 std::span<const SyntheticKindInfo> synthetic_kinds() { return kKinds; }
 
-// Eight cells a side in the first octave; each octave has twice the frequency and 0.45 of the amplitude of
-// the one before, down to cells of two texels: amplitude falls like f^−1.15, slope like f^−0.15, power per
-// unit of frequency like f^−3.3.
+// Makes the noise map. Eight cells a side in the first octave; each octave has twice the frequency and 0.45
+// of the amplitude of the one before, down to cells of two texels: amplitude falls like f^−1.15, slope like
+// f^−0.15, power per unit of frequency like f^−3.3.
 Grid<float> make_noise(const SyntheticOptions& options) {
   const FractalNoise noise{
       .frequency = 8, .highest_frequency = highest_frequency(options), .gain = 0.45, .seed = options.seed};

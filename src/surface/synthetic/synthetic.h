@@ -1,4 +1,4 @@
-// Synthetic height maps: materials made from hashed noise, and shapes whose light has a closed form.
+// Synthesizes height maps: materials made from hashed noise, and shapes whose light has a closed form.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct SyntheticKindInfo {
   std::optional<double> default_angle_deg;  // only of kinds with an angle
 };
 
-// Every kind, in the order of the enumeration.
+// Returns every kind, in the order of the enumeration.
 std::span<const SyntheticKindInfo> synthetic_kinds();
 
 struct SyntheticOptions {
@@ -38,9 +38,9 @@ struct SyntheticMap {
   double recommended_amplitude_m;  // for a map of 1 m along its longer side; in proportion for other sizes
 };
 
-// The same options give the same bytes on every run and at any thread count. Features are measured in units
-// of the longer side, so that they keep their shape on maps that are not square, and every kind continues
-// without a seam where the map repeats. Throws InputError for sizes and angles outside the ranges above.
+// Makes a map; the same bytes on every run and at any thread count. Features are measured in units of the
+// longer side, so that they keep their shape on maps that are not square, and every kind continues without a
+// seam where the map repeats. Throws InputError for sizes and angles outside the ranges above.
 SyntheticMap synthesize(SyntheticKind kind, const SyntheticOptions& options);
 
 }  // namespace hemibake

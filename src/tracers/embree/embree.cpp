@@ -13,21 +13,21 @@
 #include "surface/facets.h"
 #include "surface/frame.h"
 #include "tracers/embree/scene.h"
-#include "tracers/link_merge.h"
+#include "tracers/hit_form_factors.h"
 
 namespace hemibake {
 namespace {
 
 // Hash streams, one per use.
-constexpr uint64_t kTexelRotation = 1, kNodeRotation = 2, kNodeShiftU = 3, kNodeShiftV = 4, kTexelChoice = 5,
-                   kNodeChoice = 6, kNodeElevation = 7;
+constexpr uint64_t kTexelRotation = 1, kNodeRotation = 2, kNodeShiftU = 3, kNodeShiftV = 4, kTexelSample = 5,
+                   kNodeSample = 6, kNodeElevation = 7;
 
 class EmbreeTracer final : public Tracer {
  public:
   EmbreeTracer(const Surface& surface, const RayOptions& options);
 
   const Surface& surface() const override { return surface_; }
-  const PatchSet& patch_set() const override { return patches_; }
+  const PatchSet& patch_set() const override { return patch_set_; }
   void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const override;
   void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const override;
   std::unique_ptr<Tracer> reseeded(uint64_t seed) const override {
@@ -38,7 +38,7 @@ class EmbreeTracer final : public Tracer {
   std::vector<RayRecord> replay_texel(uint32_t texel) const override;
 
  private:
-  // What nodes of one kind share.
+  // Rays that all nodes of one kind share.
   struct NodeRays {
     std::vector<glm::vec2> azimuths;  // unit, tangent plane, one per ray
     std::vector<glm::dvec2> points;   // in the unit square, one per ray
@@ -50,20 +50,22 @@ class EmbreeTracer final : public Tracer {
     }
   };
 
+  struct Receiver {
+    FloatFrame frame;
+    uint32_t own_facet;  // kNoFacet: a texel
+    double u;            // in [0, 1): draws the node of the first hit
+  };
+
   static NodeRays make_node_rays(int rays);
   glm::vec3 texel_start(uint32_t texel) const;
   FloatFrame texel_frame(uint32_t texel) const;
   template <class StartOf>
-  void trace_rays(std::span<const WeightedDirection> rays, const FloatFrame& frame, const StartOf& start_of,
-                  uint32_t own_facet, double choice, bool with_links, Row& row, TracerCounts& counts) const;
-  void add_links(const SurfaceHit& hit, double weight, double choice, bool of_node,
-                 std::vector<FormFactor>& links) const;
-  void trace_node(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const;
-  glm::dvec2 hit_position_texels(const SurfaceHit& hit) const;
+  void trace_rays(const Receiver& receiver, std::span<const WeightedDirection> rays, const StartOf& start_of,
+                  bool with_links, Row& row, TracerCounts& counts) const;
 
   const Surface& surface_;
   RayOptions options_;
-  PatchSet patches_;
+  PatchSet patch_set_;
   std::vector<WeightedDirection> texel_directions_;
   std::array<NodeRays, kNodeKinds> node_rays_;  // by node_kind
   std::shared_ptr<const EmbreeScene> scene_;
@@ -73,7 +75,7 @@ class EmbreeTracer final : public Tracer {
 EmbreeTracer::EmbreeTracer(const Surface& surface, const RayOptions& options)
     : surface_(surface),
       options_(options),
-      patches_(make_patches(surface, options.patch_kind)),
+      patch_set_(make_patches(surface, options.patch_kind)),
       texel_directions_(make_directions(options.directions, options.rays, options.cone_degrees)),
       scene_(std::make_shared<EmbreeScene>(surface, options.max_distance_m)) {
   const double range = height_range_m(surface) / surface.texel_size_m;
@@ -95,57 +97,45 @@ EmbreeTracer::NodeRays EmbreeTracer::make_node_rays(int rays) {
   return result;
 }
 
-glm::dvec2 EmbreeTracer::hit_position_texels(const SurfaceHit& hit) const {
-  return facet_point_texels(surface_, hit.facet, {hit.u, hit.v});
-}
-
 glm::vec3 EmbreeTracer::texel_start(uint32_t texel) const {
-  const int x = static_cast<int>(texel) % surface_.width(), y = static_cast<int>(texel) / surface_.width();
-  const double z = static_cast<float>(surface_.heights_m[texel] / surface_.texel_size_m);
-  return {x, y, z + lift_texels_};
+  const glm::dvec3 center = texel_position_texels(surface_, texel);
+  return {center.x, center.y, static_cast<float>(center.z) + lift_texels_};
 }
 
 EmbreeTracer::FloatFrame EmbreeTracer::texel_frame(uint32_t texel) const {
-  const double turn = 2 * kPi * unit_interval(mix_bits(options_.seed, kTexelRotation, texel));
-  const Frame frame = rotated(frame_about(glm::dvec3(surface_.normals[texel])), turn);
+  const double rotation = 2 * kPi * unit_interval(mix_bits(options_.seed, kTexelRotation, texel));
+  const Frame frame = rotated(frame_about(glm::dvec3(surface_.normals[texel])), rotation);
   return {frame.tangent, frame.bitangent, frame.normal};
 }
 
-// Nodes alone can meet only each other for ever (add_node_links): a texel draws one node however near it is.
-void EmbreeTracer::add_links(const SurfaceHit& hit, double weight, double choice, bool of_node,
-                             std::vector<FormFactor>& links) const {
-  if (options_.patch_kind == PatchKind::kFacets) {
-    const double distance = of_node ? hit.distance_texels : std::numeric_limits<double>::infinity();
-    add_node_links(patches_, hit.facet, {hit.u, hit.v}, distance, choice, weight, links);
-  } else if (options_.texel_links == TexelLinks::kNearest) {
-    add_nearest_link(surface_, hit_position_texels(hit), weight, links);
-  } else {
-    add_bilinear_links(surface_, hit_position_texels(hit), weight, links);
-  }
-}
-
-// start_of(i): where ray i starts, texels, already lifted. choice: in [0, 1), which node the first hit draws.
+// Traces one receiver's rays. start_of(i): start of ray i, texels, already lifted.
 template <class StartOf>
-void EmbreeTracer::trace_rays(std::span<const WeightedDirection> rays, const FloatFrame& frame,
-                              const StartOf& start_of, uint32_t own_facet, double choice, bool with_links,
-                              Row& row, TracerCounts& counts) const {
-  double visible = 0, direct = 0;
+void EmbreeTracer::trace_rays(const Receiver& receiver, std::span<const WeightedDirection> rays,
+                              const StartOf& start_of, bool with_links, Row& row,
+                              TracerCounts& counts) const {
+  // Nodes alone can meet only each other for ever: a texel draws one node however near it is.
+  const bool is_texel = receiver.own_facet == kNoFacet;
+  double visible = 0, direct = 0, u = receiver.u;
   glm::dvec3 bent(0);
   size_t hits = 0;
   row.links.clear();
   SurfaceHit hit;
   for (size_t i = 0; i < rays.size(); ++i) {
-    const glm::vec3 direction = frame.world_from_tangent(rays[i].local);
-    const RayOutcome fate = scene_->follow(start_of(i), direction, own_facet, with_links ? &hit : nullptr);
-    if (fate == RayOutcome::kHit) {
+    const glm::vec3 direction = receiver.frame.world_from_tangent(rays[i].local);
+    const RayOutcome outcome =
+        scene_->follow(start_of(i), direction, receiver.own_facet, with_links ? &hit : nullptr);
+    if (outcome == RayOutcome::kHit) {
       ++hits;
-      choice = cranley_patterson_rotate(choice, kGoldenStep);
-      if (with_links) add_links(hit, rays[i].cosine_weight, choice, own_facet != kNoFacet, row.links);
+      u = cranley_patterson_rotate(u, kGoldenStep);
+      if (!with_links) continue;
+      const double distance = is_texel ? std::numeric_limits<double>::infinity() : hit.distance_texels;
+      add_form_factors(surface_, patch_set_, options_.texel_links,
+                       {hit.facet, {hit.u, hit.v}, distance, rays[i].cosine_weight}, u, row.links);
     } else {
       visible += rays[i].uniform_weight;
       direct += rays[i].cosine_weight;
       bent += rays[i].uniform_weight * glm::dvec3(direction);
-      counts.truncated += fate == RayOutcome::kTruncated;
+      counts.truncated += outcome == RayOutcome::kTruncated;
     }
   }
   counts.rays += rays.size();
@@ -154,25 +144,21 @@ void EmbreeTracer::trace_rays(std::span<const WeightedDirection> rays, const Flo
   row.visible_fraction = all_sky ? 1 : no_sky ? 0 : std::min(1.0, visible);
   row.direct_over_pi = all_sky ? 1 : no_sky ? 0 : std::min(1.0, direct);
   const double length = glm::length(bent);
-  row.bent_normal = length > 1e-6 ? bent / length : glm::dvec3(frame.normal);
-  if (with_links) merge_links(row);
+  row.bent_normal = length > 1e-6 ? bent / length : glm::dvec3(receiver.frame.normal);
+  if (with_links) complete_row(row);
 }
 
 void EmbreeTracer::trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const {
   const glm::vec3 start = texel_start(texel);
-  const double choice = unit_interval(mix_bits(options_.seed, kTexelChoice, texel));
+  const double u = unit_interval(mix_bits(options_.seed, kTexelSample, texel));
   trace_rays(
-      texel_directions_, texel_frame(texel), [&](size_t) { return start; }, kNoFacet, choice, with_links, row,
+      {texel_frame(texel), kNoFacet, u}, texel_directions_, [&](size_t) { return start; }, with_links, row,
       counts);
 }
 
 void EmbreeTracer::trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const {
   if (options_.patch_kind == PatchKind::kTexels) return trace_texel(patch, with_links, row, counts);
-  trace_node(patch, with_links, row, counts);
-}
-
-void EmbreeTracer::trace_node(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const {
-  const FacetNode node = facet_node(patches_, patch);
+  const FacetNode node = facet_node(patch_set_, patch);
   const NodeRays& set = node_rays_[node_kind(node.subdivision, node.node)];
   const auto random = [&](uint64_t stream) { return unit_interval(mix_bits(options_.seed, stream, patch)); };
 
@@ -191,8 +177,8 @@ void EmbreeTracer::trace_node(uint32_t patch, bool with_links, Row& row, TracerC
     return glm::vec3(x, y, z + lift_texels_);
   };
 
-  // Cosine-distributed, shifted in elevation too: a few rays at the same elevations everywhere would miss the
-  // same low blockers at every node.
+  // Cosine-distributed, shifted in elevation too: at the same few elevations every node would miss the same
+  // low blockers.
   thread_local std::vector<WeightedDirection> rays;  // scratch
   rays.resize(set.azimuths.size());
   const double count = static_cast<double>(rays.size()), shift = random(kNodeElevation);
@@ -203,8 +189,8 @@ void EmbreeTracer::trace_node(uint32_t patch, bool with_links, Row& row, TracerC
   }
   const Frame frame =
       rotated(frame_about(facet_normal(surface_, node.facet)), 2 * kPi * random(kNodeRotation));
-  trace_rays(rays, {frame.tangent, frame.bitangent, frame.normal}, start_of, node.facet, random(kNodeChoice),
-             with_links, row, counts);
+  trace_rays({{frame.tangent, frame.bitangent, frame.normal}, node.facet, random(kNodeSample)}, rays,
+             start_of, with_links, row, counts);
 }
 
 std::vector<RayRecord> EmbreeTracer::replay_texel(uint32_t texel) const {
@@ -214,11 +200,11 @@ std::vector<RayRecord> EmbreeTracer::replay_texel(uint32_t texel) const {
   for (const WeightedDirection& ray : texel_directions_) {
     const glm::vec3 direction = frame.world_from_tangent(ray.local);
     SurfaceHit hit;
-    RayRecord record{glm::dvec3(direction), ray.cosine_weight, ray.uniform_weight, false, 0, {0, 0}, 0, 0};
+    RayRecord record{glm::dvec3(direction), ray.cosine_weight, ray.uniform_weight, false, 0, {}, 0, 0};
     if (scene_->follow(start, direction, kNoFacet, &hit) == RayOutcome::kHit) {
       record.hit = true;
       record.facet = hit.facet;
-      record.hit_texel = hit_position_texels(hit);
+      record.hit_texel = facet_point_texels(surface_, hit.facet, {hit.u, hit.v});
       record.distance_m = hit.distance_texels * surface_.texel_size_m;
       record.tiles_crossed = hit.tiles_crossed;
     }
@@ -234,7 +220,7 @@ std::unique_ptr<Tracer> make_embree_tracer(const Surface& surface, const RayOpti
 }
 
 size_t embree_scene_bytes(const Surface& surface) {
-  // Vertices 12, indices 24 and the tree about 90 bytes a facet; measured 512² to 4096², with 10 % to spare.
+  // Vertices 12, indices 24 and the tree about 90 bytes a facet, and some to spare.
   return size_t{facet_count(surface)} * 130 + (size_t{1} << 20);
 }
 

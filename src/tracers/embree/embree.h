@@ -1,14 +1,14 @@
-// The reference tracer: rays against the triangles of the surface with Embree.
+// Traces rays against the triangles of the surface with Embree: the reference tracer.
 //
 // A wrapping map is followed tile by tile for any distance: the scene holds one tile (small maps repeated up
 // to 64 texels) and a margin, and a ray that leaves it goes on in the next copy. A ray below the highest
 // texel is followed for a horizontal distance of 10⁵ height ranges (at most 10⁶ tiles), then it counts as sky
 // and in TracerCounts::truncated. Only rays within 10⁻⁵ rad of the horizon can get that far below the top, so
 // α and E₀/π are off by at most 10⁻⁵; with more than 10 tile lengths of height range the bound is range /
-// (10⁶ tiles). Open edges: what leaves the map's rectangle meets nothing.
+// (10⁶ tiles). Open edges: rays that leave the map's rectangle meet nothing.
 //
-// Starts are lifted vertically, never along the normal (FACTS.md §4). Facets start each ray at another point
-// of their area, so that a row is the average over the facet.
+// Starts are lifted vertically: along the normal they may end inside the solid.
+// Nodes start each ray at another point of a small copy of their facet.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@ namespace hemibake {
 // memory).
 std::unique_ptr<Tracer> make_embree_tracer(const Surface& surface, const RayOptions& options);
 
-// Bytes the scene of this surface will take, about (measured: see the .cpp).
+// Estimates the bytes that the scene of this surface takes.
 size_t embree_scene_bytes(const Surface& surface);
 
 }  // namespace hemibake

@@ -10,13 +10,11 @@
 namespace hemibake {
 namespace {
 
-// The scene is in units of texels: vertices then stand on integers, which float holds exactly on any map we
-// take.
-constexpr int kSmallestBlock =
-    64;                      // texels: smaller maps are repeated, so that a step to the next copy is worth it
-constexpr int kMargin = 64;  // texels of neighbouring copies around the block
+// In texels, so that vertices stand on integers, which float holds exactly.
+constexpr int kSmallestBlock = 64;  // smaller maps are repeated up to it, so that fewer copies are entered
+constexpr int kMargin = 64;         // of neighbouring copies around the block
 
-// Errors are asked for where they matter; an exception must not leave this callback.
+// Ignores an error: errors are asked for after building, and no exception may leave this callback.
 void ignore_embree_error(void*, RTCError, const char*) {}
 
 }  // namespace
@@ -33,7 +31,7 @@ EmbreeScene::EmbreeScene(const Surface& surface, double max_distance_m)
   block_height_ = repeat_y * surface.height();
   margin_ = wrap_ ? kMargin : 0;
   const double smallest_block = std::min(block_width_, block_height_);
-  cut_distance_texels_ = std::min(std::max(1e5 * range, 16 * smallest_block), 1e6 * smallest_block);
+  truncation_distance_texels_ = std::min(std::max(1e5 * range, 16 * smallest_block), 1e6 * smallest_block);
   build();
 }
 
@@ -44,7 +42,7 @@ EmbreeScene::~EmbreeScene() {
 
 void EmbreeScene::build() {
   // One thread builds: the order of triangles in the tree decides ties between them, and must not depend on
-  // --threads.
+  // the number of threads.
   device_ = rtcNewDevice("threads=1");
   if (device_ == nullptr) throw std::runtime_error("Embree finds no device");
   rtcSetDeviceErrorFunction(device_, ignore_embree_error, nullptr);
@@ -66,6 +64,18 @@ void EmbreeScene::build() {
     rtcReleaseGeometry(geometry);
     throw std::bad_alloc();
   }
+  fill_triangles(vertices, indices, columns, rows);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene_);
+  if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
+    throw std::runtime_error(
+        fmt::format("Embree could not build the scene (error {})", static_cast<int>(error)));
+}
+
+// Fills the vertices of columns × rows cells, margin included, and the indices of their triangles.
+void EmbreeScene::fill_triangles(float* vertices, uint32_t* indices, uint32_t columns, uint32_t rows) const {
   for (uint32_t j = 0; j <= rows; ++j) {
     for (uint32_t i = 0; i <= columns; ++i) {
       const int x = static_cast<int>(i) - margin_, y = static_cast<int>(j) - margin_;
@@ -76,7 +86,7 @@ void EmbreeScene::build() {
       *vertices++ = static_cast<float>(height_m / surface_.texel_size_m);
     }
   }
-  // The same cut and the same order of corners as surface/facets.h.
+  // Cut and corners in the order of surface/facets.h.
   for (uint32_t j = 0; j < rows; ++j) {
     for (uint32_t i = 0; i < columns; ++i) {
       const uint32_t corner = j * (columns + 1) + i;
@@ -85,13 +95,6 @@ void EmbreeScene::build() {
         *indices++ = index;
     }
   }
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene_, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene_);
-  if (const RTCError error = rtcGetDeviceError(device_); error != RTC_ERROR_NONE)
-    throw std::runtime_error(
-        fmt::format("Embree could not build the scene (error {})", static_cast<int>(error)));
 }
 
 uint32_t EmbreeScene::facet_of_primitive(uint32_t primitive) const {
@@ -103,8 +106,8 @@ uint32_t EmbreeScene::facet_of_primitive(uint32_t primitive) const {
   return 2 * static_cast<uint32_t>(surface_.heights_m.index(i, j)) + primitive % 2;
 }
 
-// Traces one straight piece inside the scene; on a hit of the ray's own facet (rounding on a steep wall) it
-// goes on behind it: a flat facet never sees itself.
+// Follows one straight piece inside the scene. Hits of the ray's own facet, due to rounding on a steep wall,
+// are passed through: a flat facet never sees itself.
 RayOutcome EmbreeScene::follow_segment(const glm::vec3& start, const glm::vec3& direction, float length,
                                        uint32_t own_facet, SurfaceHit* hit) const {
   RTCIntersectContext context;
@@ -143,9 +146,9 @@ RayOutcome EmbreeScene::follow_segment(const glm::vec3& start, const glm::vec3& 
   }
 }
 
-// Length along a ray from (x, y) until it leaves the block and the margin, less one cell kept as overlap. In
-// float: an error is far less than that cell. A direction of 0 along an axis never leaves along it (x / 0 =
-// ∞, inside).
+// Returns the length of a ray from (x, y) to the end of block and margin, less one cell of overlap.
+// In float: an error is far less than that cell. A direction of 0 along an axis never leaves along it
+// (x / 0 = ∞, inside).
 float EmbreeScene::length_in_block(float x, float y, const glm::vec3& direction) const {
   const float reach = static_cast<float>(margin_ - 1);
   const float edge_x = std::signbit(direction.x) ? -reach : static_cast<float>(block_width_) + reach;
@@ -155,7 +158,7 @@ float EmbreeScene::length_in_block(float x, float y, const glm::vec3& direction)
 
 RayOutcome EmbreeScene::follow(const glm::vec3& start, const glm::vec3& direction, uint32_t own_facet,
                                SurfaceHit* hit) const {
-  // Where the ray has left the slab of the relief. Rounded up: the highest texel itself can still be met.
+  // The ray leaves the slab of the relief there. Rounded up: the highest texel itself can still be met.
   float end = max_distance_texels_;
   if (direction.z > 0) {
     const float climb = top_texels_ - start.z;
@@ -163,20 +166,19 @@ RayOutcome EmbreeScene::follow(const glm::vec3& start, const glm::vec3& directio
     end = std::min(end, climb / direction.z * 1.0001f);
   }
   const float first_length = wrap_ ? std::min(end, length_in_block(start.x, start.y, direction)) : end;
-  const RayOutcome fate = follow_segment(start, direction, first_length, own_facet, hit);
-  if (fate == RayOutcome::kHit || first_length == end) return fate;
+  const RayOutcome outcome = follow_segment(start, direction, first_length, own_facet, hit);
+  if (outcome == RayOutcome::kHit || first_length == end) return outcome;
   return follow_beyond(start, direction, first_length, end, own_facet, hit);
 }
 
-// Goes on through the following copies of the map. Positions come from the start in double, so that nothing
-// drifts.
+// Follows a ray through further copies of the map. Positions come from the start in double: nothing drifts.
 RayOutcome EmbreeScene::follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length,
                                       double end, uint32_t own_facet, SurfaceHit* hit) const {
   const double horizontal = std::hypot(direction.x, direction.y);
-  const double cut = cut_distance_texels_ / horizontal;
+  const double truncation_distance = truncation_distance_texels_ / horizontal;
   // Each piece begins a little before the last one ended: rounding of its start opens no gap.
   const double overlap = 0.05 / horizontal;
-  const double stop = std::min(end, cut);
+  const double stop = std::min(end, truncation_distance);
   double travelled = first_length;
   for (int tiles = 1; travelled < stop; ++tiles) {
     const double begin = travelled - overlap;
@@ -184,7 +186,7 @@ RayOutcome EmbreeScene::follow_beyond(const glm::vec3& start, const glm::vec3& d
     position.x -= block_width_ * std::floor(position.x / block_width_);
     position.y -= block_height_ * std::floor(position.y / block_height_);
     const glm::vec3 piece_start(position);
-    // A piece is a block long or more but for the last one, so this comes to an end.
+    // Every piece but the last is a block long or more, so the loop ends.
     const double length = length_in_block(piece_start.x, piece_start.y, direction);
     travelled = begin + length;
     const float piece_length = static_cast<float>(std::min(length, stop - begin));
@@ -196,7 +198,7 @@ RayOutcome EmbreeScene::follow_beyond(const glm::vec3& start, const glm::vec3& d
       return RayOutcome::kHit;
     }
   }
-  return end <= cut ? RayOutcome::kEscaped : RayOutcome::kTruncated;
+  return end <= truncation_distance ? RayOutcome::kEscaped : RayOutcome::kTruncated;
 }
 
 }  // namespace hemibake

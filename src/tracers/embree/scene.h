@@ -1,5 +1,5 @@
-// The triangles of a surface in Embree, and how a ray is followed over them: through the copies of a wrapping
-// map too (tracers/embree/embree.h says how far). In units of texels.
+// Holds the triangles of a surface in Embree and follows rays over them, in units of texels. Rays go on
+// through the copies of a wrapping map (tracers/embree/embree.h says how far).
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -28,13 +28,14 @@ class EmbreeScene {
   EmbreeScene& operator=(const EmbreeScene&) = delete;
   ~EmbreeScene();
 
-  // direction: unit. own_facet: the ray does not meet it; kNoFacet: it starts on none. hit: null where only
-  // the fate is asked for.
+  // Follows a ray to its end. start: texels. direction: unit. own_facet: never hit; kNoFacet: none.
+  // hit: filled where the ray hits; null: only the outcome is wanted.
   RayOutcome follow(const glm::vec3& start, const glm::vec3& direction, uint32_t own_facet,
                     SurfaceHit* hit) const;
 
  private:
   void build();
+  void fill_triangles(float* vertices, uint32_t* indices, uint32_t columns, uint32_t rows) const;
   RayOutcome follow_segment(const glm::vec3& start, const glm::vec3& direction, float length,
                             uint32_t own_facet, SurfaceHit* hit) const;
   RayOutcome follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length,
@@ -46,12 +47,12 @@ class EmbreeScene {
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
   bool wrap_;
-  int block_width_, block_height_;  // texels the scene repeats the map to
+  int block_width_, block_height_;  // of the repeated map in the scene, texels
   int margin_;
   uint32_t scene_columns_;  // cells in a row of the scene
   float top_texels_;        // height of the highest texel
   float max_distance_texels_;
-  double cut_distance_texels_;  // horizontal distance after which a ray is cut short
+  double truncation_distance_texels_;  // horizontal; a ray ends there
 };
 
 }  // namespace hemibake

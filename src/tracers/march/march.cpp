@@ -12,15 +12,15 @@
 #include "sampling/low_discrepancy.h"
 #include "surface/frame.h"
 #include "surface/ray_outcome.h"
-#include "tracers/link_merge.h"
+#include "tracers/hit_form_factors.h"
 
 namespace hemibake {
 namespace {
 
 constexpr uint64_t kTexelRotation = 1;  // hash stream
 
-// Without cosine weights.
-std::vector<WeightedDirection> published_rays(int count, double cone_degrees) {
+// Returns the ray set of 2018 (MarchRays::kMayaux2018), cosine weights still 0.
+std::vector<WeightedDirection> mayaux2018_rays(int count, double cone_degrees) {
   const double cos_max = cone_degrees >= 180 ? 0 : std::cos(cone_degrees * kPi / 360);
   std::vector<WeightedDirection> rays;
   for (int i = 1; i <= count; ++i) {
@@ -35,14 +35,14 @@ std::vector<WeightedDirection> published_rays(int count, double cone_degrees) {
 
 std::vector<WeightedDirection> march_rays(const MarchOptions& options) {
   std::vector<WeightedDirection> rays =
-      options.ray_set == MarchRays::kPublished
-          ? published_rays(options.rays, options.cone_degrees)
+      options.ray_set == MarchRays::kMayaux2018
+          ? mayaux2018_rays(options.rays, options.cone_degrees)
           : make_directions(DirectionSet::kUniform, options.rays, options.cone_degrees);
   double cosine_sum = 0;
   for (const WeightedDirection& ray : rays) cosine_sum += static_cast<double>(ray.local.z);
   const bool exact = options.weights == MarchWeights::kExact;
   for (WeightedDirection& ray : rays) {
-    // The one ray of N = 1 may lie on the horizon: it then has all the weight there is.
+    // The single ray of N = 1 may lie on the horizon: it then has all the weight.
     const double share = cosine_sum > 0 ? static_cast<double>(ray.local.z) / cosine_sum : 1.0 / options.rays;
     ray.cosine_weight = exact ? share : 2.0 * static_cast<double>(ray.local.z) / options.rays;
   }
@@ -54,7 +54,7 @@ class MarchTracer final : public Tracer {
   MarchTracer(const Surface& surface, MarchOptions options);
 
   const Surface& surface() const override { return surface_; }
-  const PatchSet& patch_set() const override { return patches_; }
+  const PatchSet& patch_set() const override { return patch_set_; }
   void trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const override;
   void trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const override {
     trace_texel(patch, with_links, row, counts);
@@ -72,12 +72,12 @@ class MarchTracer final : public Tracer {
   Frame texel_frame(uint32_t texel) const;
   double height_at(double x, double y) const;
   RayOutcome march(const glm::dvec3& start, const glm::dvec3& direction, double* distance) const;
-  glm::dvec2 link_position(const glm::dvec3& start, const glm::dvec3& direction, double distance) const;
+  glm::dvec2 into_map(const glm::dvec2& position) const;
   uint32_t facet_at(const glm::dvec2& position) const;
 
   // Lengths in texels from here on; heights count from height-map value 0.
   const Surface& surface_;
-  PatchSet patches_;
+  PatchSet patch_set_;
   MarchOptions options_;
   const bool wrap_, round_weights_;
   std::vector<WeightedDirection> rays_;
@@ -87,10 +87,10 @@ class MarchTracer final : public Tracer {
 
 MarchTracer::MarchTracer(const Surface& surface, MarchOptions options)
     : surface_(surface),
-      patches_(make_patches(surface, PatchKind::kTexels)),
+      patch_set_(make_patches(surface, PatchKind::kTexels)),
       options_(std::move(options)),
       wrap_(surface.edge == Edge::kWrap),
-      round_weights_(options_.lookup == MarchLookup::kPublished),
+      round_weights_(options_.lookup == MarchLookup::kMayaux2018),
       rays_(march_rays(options_)) {
   if (!options_.normal_lengths.empty())
     expect_equal(options_.normal_lengths.size(), surface.heights_m.size(),
@@ -105,12 +105,12 @@ MarchTracer::MarchTracer(const Surface& surface, MarchOptions options)
 
 void MarchTracer::pad_heights() {
   const int width = surface_.width(), height = surface_.height();
-  const bool across_seam = wrap_ && options_.lookup == MarchLookup::kBilinear;
-  const auto settle = [&](int i, int n) { return across_seam ? wrap_index(i, n) : std::clamp(i, 0, n - 1); };
+  const Edge edge = options_.lookup == MarchLookup::kBilinear ? surface_.edge : Edge::kOpen;
   padded_heights_ = Grid<float>(width + 2, height + 2);
   for (int y = -1; y <= height; ++y) {
     for (int x = -1; x <= width; ++x) {
-      const double height_m = surface_.heights_m(settle(x, width), settle(y, height));
+      const double height_m =
+          surface_.heights_m(wrap_or_clamp(x, width, edge), wrap_or_clamp(y, height, edge));
       padded_heights_(x + 1, y + 1) =
           static_cast<float>((options_.lowest_m + height_m) / surface_.texel_size_m);
     }
@@ -122,16 +122,16 @@ glm::dvec3 MarchTracer::texel_start(uint32_t texel) const {
   return {x, y, static_cast<double>(padded_heights_(x + 1, y + 1)) + lift_};
 }
 
-// Not orthonormal where the normal is not a unit vector, as published.
+// Returns the tangent frame; not orthonormal where the normal is not a unit vector, as in 2018.
 Frame MarchTracer::texel_frame(uint32_t texel) const {
   const double length =
       options_.normal_lengths.empty() ? 1.0 : static_cast<double>(options_.normal_lengths[texel]);
   const Frame frame = frame_about(length * glm::dvec3(surface_.normals[texel]));
-  if (options_.ray_set == MarchRays::kPublished) return frame;
+  if (options_.ray_set == MarchRays::kMayaux2018) return frame;
   return rotated(frame, 2 * kPi * unit_interval(mix_bits(options_.seed, kTexelRotation, texel)));
 }
 
-// -½ <= x < width − ½, y alike.
+// Returns the height at a position, bilinear. -½ <= x < width − ½, y alike, texels.
 double MarchTracer::height_at(double x, double y) const {
   const int i = static_cast<int>(x + 1), j = static_cast<int>(y + 1);
   double fx = x + 1 - i, fy = y + 1 - j;
@@ -146,12 +146,12 @@ double MarchTracer::height_at(double x, double y) const {
   return high + fy * (low - high);
 }
 
-// distance: where hit, in units of |direction| = 1 along the ray, whatever the length of `direction`.
+// Marches a ray to its end. distance: of a hit along the ray, texels if |direction| = 1.
 RayOutcome MarchTracer::march(const glm::dvec3& start, const glm::dvec3& direction, double* distance) const {
   const double horizontal = 1 - direction.z * direction.z;
   const glm::dvec3 step = direction * (horizontal > 0 ? 1 / std::sqrt(horizontal) : 1.0);
   const double width = surface_.width(), height = surface_.height();
-  // On a tiling map a step across several tiles is the same as its remainder.
+  // On a wrapping map a step across several tiles equals its remainder.
   const double step_x = wrap_ && std::abs(step.x) >= width ? std::fmod(step.x, width) : step.x;
   const double step_y = wrap_ && std::abs(step.y) >= height ? std::fmod(step.y, height) : step.y;
   double x = start.x, y = start.y, z = start.z, height_before = start.z;
@@ -178,27 +178,24 @@ RayOutcome MarchTracer::march(const glm::dvec3& start, const glm::dvec3& directi
   return RayOutcome::kTruncated;
 }
 
-// Inside the map.
-glm::dvec2 MarchTracer::link_position(const glm::dvec3& start, const glm::dvec3& direction,
-                                      double distance) const {
-  const glm::dvec2 position = glm::dvec2(start) + distance * glm::dvec2(direction);
-  const auto settle = [&](double v, double n) {
+// Returns a position wrapped or clamped into the map, texels.
+glm::dvec2 MarchTracer::into_map(const glm::dvec2& position) const {
+  const auto into_axis = [&](double v, double n) {
     if (v >= -0.5 && v < n - 0.5) return v;
     if (!wrap_) return std::clamp(v, 0.0, n - 1);
     const double r = std::fmod(v + 0.5, n);
     return (r < 0 ? r + n : r) - 0.5;
   };
-  return {settle(position.x, surface_.width()), settle(position.y, surface_.height())};
+  return {into_axis(position.x, surface_.width()), into_axis(position.y, surface_.height())};
 }
 
 uint32_t MarchTracer::facet_at(const glm::dvec2& position) const {
   // Open maps have a cell less in each direction than texels.
   const int columns = surface_.width() - (wrap_ ? 0 : 1), rows = surface_.height() - (wrap_ ? 0 : 1);
   const double x = std::floor(position.x), y = std::floor(position.y);
-  const auto settle = [&](double v, int n) {
-    return wrap_ ? wrap_index(static_cast<int>(v), n) : std::clamp(static_cast<int>(v), 0, n - 1);
-  };
-  const uint32_t cell = static_cast<uint32_t>(settle(y, rows) * columns + settle(x, columns));
+  const int column = wrap_or_clamp(static_cast<int>(x), columns, surface_.edge),
+            row = wrap_or_clamp(static_cast<int>(y), rows, surface_.edge);
+  const uint32_t cell = static_cast<uint32_t>(row * columns + column);
   return 2 * cell + (position.x - x + position.y - y < 1 ? 0 : 1);
 }
 
@@ -212,15 +209,16 @@ void MarchTracer::trace_texel(uint32_t texel, bool with_links, Row& row, TracerC
   for (const WeightedDirection& ray : rays_) {
     const glm::dvec3 direction = frame.world_from_tangent(glm::dvec3(ray.local));
     double distance = 0;
-    const RayOutcome fate = march(start, direction, &distance);
-    if (fate == RayOutcome::kHit) {
+    const RayOutcome outcome = march(start, direction, &distance);
+    if (outcome == RayOutcome::kHit) {
       if (with_links)
-        add_nearest_link(surface_, link_position(start, direction, distance), ray.cosine_weight, row.links);
+        add_nearest_form_factor(surface_, into_map(glm::dvec2(start) + distance * glm::dvec2(direction)),
+                                ray.cosine_weight, row.links);
     } else {
       ++missed;
       direct += ray.cosine_weight;
       bent += direction;
-      counts.truncated += fate == RayOutcome::kTruncated;
+      counts.truncated += outcome == RayOutcome::kTruncated;
     }
   }
   counts.rays += rays_.size();
@@ -228,13 +226,13 @@ void MarchTracer::trace_texel(uint32_t texel, bool with_links, Row& row, TracerC
   row.direct_over_pi = direct;
   const double length = glm::length(bent);
   row.bent_normal = length > 1e-6 ? bent / length : glm::dvec3(surface_.normals[texel]);
-  if (options_.weights == MarchWeights::kPublished) {
-    if (with_links) combine_links(row.links);
+  if (options_.weights == MarchWeights::kMayaux2018) {
+    if (with_links) merge_form_factors(row.links);
     return;
   }
   // Exactly 1 on open ground, whatever the weights round to.
   row.direct_over_pi = missed == rays_.size() ? 1 : std::min(1.0, direct);
-  if (with_links) merge_links(row);
+  if (with_links) complete_row(row);
 }
 
 std::vector<RayRecord> MarchTracer::replay_texel(uint32_t texel) const {
@@ -243,13 +241,12 @@ std::vector<RayRecord> MarchTracer::replay_texel(uint32_t texel) const {
   std::vector<RayRecord> records;
   for (const WeightedDirection& ray : rays_) {
     const glm::dvec3 direction = frame.world_from_tangent(glm::dvec3(ray.local));
-    RayRecord record{
-        glm::normalize(direction), ray.cosine_weight, ray.uniform_weight, false, 0, {0, 0}, 0, 0};
+    RayRecord record{glm::normalize(direction), ray.cosine_weight, ray.uniform_weight, false, 0, {}, 0, 0};
     double distance = 0;
     if (march(start, direction, &distance) == RayOutcome::kHit) {
       const glm::dvec2 straight = glm::dvec2(start) + distance * glm::dvec2(direction);
       record.hit = true;
-      record.hit_texel = link_position(start, direction, distance);
+      record.hit_texel = into_map(straight);
       record.facet = facet_at(record.hit_texel);
       record.distance_m = distance * surface_.texel_size_m;
       const glm::dvec2 tiles =
@@ -263,13 +260,13 @@ std::vector<RayRecord> MarchTracer::replay_texel(uint32_t texel) const {
 
 }  // namespace
 
-MarchOptions published_march() {
+MarchOptions mayaux2018_march() {
   MarchOptions options;
   options.rays = 1024;
   options.cone_degrees = 179;
-  options.ray_set = MarchRays::kPublished;
-  options.weights = MarchWeights::kPublished;
-  options.lookup = MarchLookup::kPublished;
+  options.ray_set = MarchRays::kMayaux2018;
+  options.weights = MarchWeights::kMayaux2018;
+  options.lookup = MarchLookup::kMayaux2018;
   return options;
 }
 

@@ -1,6 +1,6 @@
-// The march of the published experiment: rays that go over the height map one texel at a time and end at the
-// first sample below it. Texels are the patches; a hit links to one texel. Source: B. Mayaux, "Study Notes:
-// Improved Ambient Occlusion", 2018, and its program (github.com/Patapom/GodComplex,
+// Marches rays over the height map one texel at a time, to the first sample below it: the experiment of 2018.
+// Texels are the patches; a hit gives one texel its form factor. Source: B. Mayaux, "Study Notes: Improved
+// Ambient Occlusion", 2018, and its program (github.com/Patapom/GodComplex,
 // Tests/TestGroundTruthAOFitting).
 //
 // A ray starts over the texel's centre, lifted vertically, and advances one texel horizontally a step (a ray
@@ -25,25 +25,24 @@
 namespace hemibake {
 
 enum class MarchRays {
-  kRotated,  // centred Hammersley points, turned about the normal by each texel's own angle, as the other
-             // tracers do
+  kRotated,  // centred Hammersley points, rotated about the normal by each texel's own angle
   // One set for all texels: cosθ = c + (1 − c) u, c = cos(cone/2), u = (i mod N)/N, azimuth 2π · radical
   // inverse of i, i = 1..N, from −y of the tangent frame towards +x.
-  kPublished,
+  kMayaux2018,
 };
 
 enum class MarchWeights {
   kExact,  // cosθ / Σ cosθ: Σ links + E₀/π = 1
-  // 2 cosθ / N: E₀/π and row sums reach 2 · mean cosθ, 1.007758 with the published rays, and up to 2 in a
-  // narrow cone.
-  kPublished,
+  // 2 cosθ / N: E₀/π and row sums reach 2 · mean cosθ, 1.007758 with the rays of 2018, up to 2 in a narrow
+  // cone.
+  kMayaux2018,
 };
 
 enum class MarchLookup {
   kBilinear,
-  // As the published sampler read heights: bilinear weights rounded to 1/256, and beyond the border texels'
-  // centres the border's height instead of the one across the seam.
-  kPublished,
+  // As the sampler of 2018: bilinear weights rounded to 1/256, and beyond the border texels' centres the
+  // border's height instead of the one across the seam.
+  kMayaux2018,
 };
 
 struct MarchOptions {
@@ -57,23 +56,22 @@ struct MarchOptions {
   MarchLookup lookup = MarchLookup::kBilinear;
   uint64_t seed = 0;  // of kRotated
 
-  // What a Surface no longer knows of its map. amplitude_m: metres per unit of height-map value, >= 0; 0: the
-  // height range. lowest_m: amplitude_m times the lowest height-map value (after filtering): what the
-  // surface's zero stands for. The sky begins at the amplitude, but never below the highest texel.
+  // Metres per unit of height-map value, >= 0; 0: the height range. The sky begins at the amplitude, but
+  // never below the highest texel.
   double amplitude_m = 0;
+  // Height of the surface's zero: amplitude_m times the lowest height-map value (after filtering).
   double lowest_m = 0;
-  // Length of each normal as its map stores it (normal_map_lengths); empty: all 1. The published program did
-  // not renormalise: rays are then stretched with the normal, which bends them away from their angle, moves
-  // hits by distance · (length − 1), and so makes the published curves what they are.
+  // Length of each normal as its map stores it (normal_map_lengths); empty: all 1. The program of 2018 did
+  // not renormalise: rays are stretched with the normal, which bends them away from their angle and moves
+  // hits by distance · (length − 1).
   Grid<float> normal_lengths;
 };
 
-// The published experiment: 1024 rays, 179°, 200 steps, and kPublished wherever there is a choice.
-// amplitude_m, lowest_m and normal_lengths are the map's: set them, and filter the heights first
-// (surface/filter.h).
-MarchOptions published_march();
+// Returns the settings of 2018: 1024 rays, 179°, 200 steps, and kMayaux2018 throughout. amplitude_m, lowest_m
+// and normal_lengths are the map's: set them, and filter the heights first (surface/filter.h).
+MarchOptions mayaux2018_march();
 
-// `surface` must outlive the tracer.
+// Makes a marching tracer. `surface` must outlive it.
 std::unique_ptr<Tracer> make_march_tracer(const Surface& surface, MarchOptions options);
 
 }  // namespace hemibake

@@ -1,4 +1,4 @@
-// The paths of every family of receivers: the texels, and each node of either half of the cells.
+// Makes the paths of every family of receivers: the texels, and each node of either half of the cells.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@ struct SliceFamilies {
   std::vector<SlicePaths> nodes;  // by node_family; empty where patches are texels
 };
 
-// azimuths: of a texel. seed: which rotations, and where in their small copies of the facet nodes start.
+// Makes all families. azimuths: of a texel. seed: of the rotations and of the starts of nodes.
 SliceFamilies make_slice_families(int azimuths, PatchKind patches, uint64_t seed);
 
-// Memory that a family's ready segments take, about, bytes.
-size_t ready_bytes(const SlicePaths& paths);
+// Estimates the bytes of a family's cached segments.
+size_t cache_bytes(const SlicePaths& paths);
 
-// By half of the cell and node.
+// Returns the index of a node's family.
 size_t node_family(uint32_t half, uint32_t node);
 
 }  // namespace hemibake

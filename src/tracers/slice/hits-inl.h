@@ -1,5 +1,5 @@
-// Vectors over the lanes of a packet, the closed forms of a slice, and the slopes at which a slice is sampled
-// for links. Compiled once for every target of Highway: no include guard of the usual kind.
+// Computes with vectors over the lanes of a packet: the closed forms of a slice, and the slopes of its hits.
+// Compiled once for every target of Highway: no include guard of the usual kind.
 #if defined(HEMIBAKE_SLICE_HITS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef HEMIBAKE_SLICE_HITS_INL_H
 #undef HEMIBAKE_SLICE_HITS_INL_H
@@ -10,7 +10,7 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "tracers/slice/walk.h"
+#include "tracers/slice/traversal.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace hemibake {
@@ -28,13 +28,13 @@ struct Vectors {
   V part[kParts];
 };
 
-// Where the lanes of a packet start, and what they have met.
+// Starts of the lanes of a packet, and their horizons so far.
 struct Lanes {
-  Vectors base, rise;  // the start is `rise` above `base`
-  Vectors to_top;      // from the start to the highest texel
-  Vectors rim;         // lowest slope
-  Vectors slope;       // of the horizon so far
-  Vectors above;       // only with stretches: cosine_above the horizon so far
+  Vectors base, rise;     // the start is `rise` above `base`
+  Vectors to_top;         // from the start to the highest texel
+  Vectors tangent_slope;  // lowest slope
+  Vectors slope;          // of the horizon so far; while hits are found, of the next one
+  Vectors above;          // kAllIntervals only: cosine_above the horizon so far
 };
 
 HWY_INLINE V broadcast(double value) { return hn::Set(kF, static_cast<float>(value)); }
@@ -45,7 +45,7 @@ HWY_INLINE Vectors load(const LaneArray<float>& values) {
   return v;
 }
 
-// a · x + b · y
+// Returns a · x + b · y.
 HWY_INLINE Vectors along(const LaneArray<float>& a, const LaneArray<float>& b, double x, double y) {
   const Vectors va = load(a), vb = load(b);
   Vectors v;
@@ -63,7 +63,7 @@ HWY_INLINE void for_each_lane(hn::Mask<F> mask, const Act& act) {
     act(hwy::Num0BitsBelowLS1Bit_Nonzero32(bits));
 }
 
-// ∫ over the elevations θ from slope m to the zenith of cos²θ and of sinθ cosθ.
+// ∫ of cos²θ and of sinθ cosθ over the elevations θ from a slope to the zenith.
 struct SkyDirection {
   V horizontal, vertical;
 };
@@ -74,17 +74,18 @@ HWY_INLINE SkyDirection direction_above(V m) {
   return {hn::NegMulAdd(half, hn::MulAdd(m, cos2, hn::Atan(kF, m)), quarter_turn), hn::Mul(half, cos2)};
 }
 
-// The same of cosθ: 1 − sinθ, without cancellation near the zenith.
+// Returns ∫ of cosθ from slope m to the zenith: 1 − sinθ, without cancellation near the zenith.
 HWY_INLINE V uniform_above(V m) {
   const V one = hn::Set(kF, 1.0f), cos2 = hn::Div(one, hn::MulAdd(m, m, one));
   const V sine = hn::Mul(hn::Abs(m), hn::Sqrt(cos2));
   return hn::IfThenElse(hn::Lt(m, hn::Zero(kF)), hn::Add(one, sine), hn::Div(cos2, hn::Add(one, sine)));
 }
 
-// The same of the cosine to a normal whose plane has the slope `rim` in this slice, over normal.z.
-HWY_INLINE V cosine_above(V m, V rim) {
+// Returns ∫ of the cosine to the normal from slope m to the zenith, over normal.z.
+// tangent_slope: of the plane normal to that normal, in this slice.
+HWY_INLINE V cosine_above(V m, V tangent_slope) {
   const SkyDirection sky = direction_above(m);
-  return hn::NegMulAdd(rim, sky.horizontal, sky.vertical);
+  return hn::NegMulAdd(tangent_slope, sky.horizontal, sky.vertical);
 }
 
 HWY_INLINE void add_lanes(V v, double* sum) {
@@ -104,33 +105,33 @@ HWY_INLINE void add_sky(const Vectors& slope, const glm::dvec2& direction, Slice
   }
 }
 
-// The slope of lanes that are not walked: above every other.
-constexpr float kClosed = 1e30f;
+// Slope above every other: of lanes that are not traced, and after a lane's last hit.
+constexpr float kUnreachable = 1e30f;
 
 // A slice of a steep receiver holds up to π times the mean of its slices.
 constexpr int kMostHits = 22 * kHitsPerSlice / 7 + 1;
 
-// Where a packet's slices are sampled: the blocked part of each lane's slice at equal steps of its weight.
+// Slopes of a packet's hits: the blocked part of each lane's slice, sampled at equal steps of its weight.
 struct HitSlopes {
-  // Ascending; kClosed after a lane's last one.
+  // Ascending; kUnreachable after a lane's last one.
   alignas(64) float slope[kMostHits + 1][kSliceLanes];
   int most = 0;  // of the lane with the most
 };
 
-// A slice above the slope `rim`, by the angle δ above it. With θ the angle of the rim, ∫ cosine over the
+// A slice above the tangent plane, by the angle δ above it. With θ the angle of the plane, ∫ cosine over the
 // slice up to δ, over normal.z, is (sin δ sin(δ + θ) − δ sin θ) / (2 cos θ), and grows by
 // sin δ cos(δ + θ) / cos θ.
 struct Slice {
-  V angle, cosine, sine;  // of the rim
+  V angle, cosine, sine;  // of the tangent plane
 
-  HWY_INLINE explicit Slice(V rim) {
+  HWY_INLINE explicit Slice(V tangent_slope) {
     const V one = hn::Set(kF, 1.0f);
-    angle = hn::Atan(kF, rim);
-    cosine = hn::Div(one, hn::Sqrt(hn::MulAdd(rim, rim, one)));
-    sine = hn::Mul(rim, cosine);
+    angle = hn::Atan(kF, tangent_slope);
+    cosine = hn::Div(one, hn::Sqrt(hn::MulAdd(tangent_slope, tangent_slope, one)));
+    sine = hn::Mul(tangent_slope, cosine);
   }
 
-  // A step of Halley's method from δ towards the angle with `weight` below it, no further than `most`.
+  // Takes a step of Halley's method from δ towards the angle with `weight` below it, no further than `most`.
   HWY_INLINE V nearer(V delta, V weight, V most) const {
     const V s = hn::Sin(kF, delta), c = hn::Cos(kF, delta);
     const V sine_up = hn::MulAdd(s, cosine, hn::Mul(c, sine)),
@@ -152,33 +153,33 @@ struct Slice {
   }
 };
 
-// Where the lanes of one part are sampled, from the slope `rim` to `horizon`: at (place + 0, 1, 2, …) /
-// per_weight of the weight above the rim, so that every sample stands for as much. place: in [0, 1).
-HWY_INLINE void place_hits(size_t part, V rim, V horizon, V per_weight, V place, HitSlopes& hits) {
-  const V zero = hn::Zero(kF), one = hn::Set(kF, 1.0f), closed = hn::Set(kF, kClosed);
-  const Slice slice(rim);
+// Places the hits of one part's lanes between the tangent plane and the horizon: at (offset + 0, 1, 2, …) /
+// per_weight of the weight above the plane, so that all hits weigh alike. offset: in [0, 1).
+HWY_INLINE void place_hits(size_t part, V tangent_slope, V horizon, V per_weight, V offset, HitSlopes& hits) {
+  const V zero = hn::Zero(kF), one = hn::Set(kF, 1.0f), unreachable = hn::Set(kF, kUnreachable);
+  const Slice slice(tangent_slope);
   const V most_delta = hn::Max(zero, hn::Sub(hn::Atan(kF, horizon), slice.angle));
-  const V whole = hn::Max(cosine_above(rim, rim), hn::Set(kF, 1e-30f));
-  const V blocked = hn::Sub(whole, cosine_above(horizon, rim));
-  const V wanted = hn::Ceil(hn::MulSub(blocked, per_weight, place));
-  const V count = hn::IfThenElse(hn::Lt(horizon, closed),
+  const V whole = hn::Max(cosine_above(tangent_slope, tangent_slope), hn::Set(kF, 1e-30f));
+  const V blocked = hn::Sub(whole, cosine_above(horizon, tangent_slope));
+  const V wanted = hn::Ceil(hn::MulSub(blocked, per_weight, offset));
+  const V count = hn::IfThenElse(hn::Lt(horizon, unreachable),
                                  hn::Min(hn::Max(wanted, zero), hn::Set(kF, float{kMostHits})), zero);
   const V weight_of_hit = hn::Div(one, hn::Max(per_weight, hn::Set(kF, 1e-30f)));
   const int most = static_cast<int>(hn::GetLane(hn::MaxOfLanes(kF, count)));
   hits.most = std::max(hits.most, most);
-  // The weight grows with the angle nearly as sin² does over a quarter turn, exactly so on level ground.
+  // The weight grows with the angle nearly as sin² does over a quarter rotation, exactly so on level ground.
   const V over_whole = hn::Div(one, whole);
   const V widths = hn::Sub(one, hn::Mul(slice.angle, hn::Set(kF, 0.636619772f)));
-  V weight = hn::Mul(place, weight_of_hit);
+  V weight = hn::Mul(offset, weight_of_hit);
   for (int k = 0; k < most; ++k) {
     const V share = hn::Min(one, hn::Mul(weight, over_whole));
     const V delta = slice.nearer(hn::Mul(widths, hn::Asin(kF, hn::Sqrt(share))), weight, most_delta);
     const auto used = hn::Lt(hn::Set(kF, static_cast<float>(k)), count);
     const V slope = hn::Min(horizon, slice.slope_at(delta));
-    hn::StoreU(hn::IfThenElse(used, slope, closed), kF, hits.slope[k] + part * kWidth);
+    hn::StoreU(hn::IfThenElse(used, slope, unreachable), kF, hits.slope[k] + part * kWidth);
     weight = hn::Add(weight, weight_of_hit);
   }
-  hn::StoreU(closed, kF, hits.slope[most] + part * kWidth);
+  hn::StoreU(unreachable, kF, hits.slope[most] + part * kWidth);
 }
 
 }  // namespace HWY_NAMESPACE

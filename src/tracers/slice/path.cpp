@@ -6,30 +6,29 @@
 namespace hemibake {
 namespace {
 
-// Crossings this close to the ends of a segment, in texels, belong to both neighbours: none is lost to
-// rounding.
+// Texels: crossings this close to the ends of a segment belong to both neighbours, so rounding loses none.
 constexpr double kOverlap = 1e-9;
 
-// A path this nearly parallel to a family of lines meets none of it in any distance that is followed.
+// Speed across a family of lines below which a path meets none of them.
 constexpr double kParallel = 1e-12;
 
-// std::floor is a function call on plain x86-64.
+// Returns ⌊x⌋; std::floor is a function call on plain x86-64.
 int floor_to_int(double x) {
   const int toward_zero = static_cast<int>(x);
   return toward_zero - (x < toward_zero ? 1 : 0);
 }
 
-// Lines of a family that a segment meets, and one before and one after them, at most: rounded up to what
-// vectors hold.
+// Lines of a family that a segment meets, and one before and after them, at most; rounded up to whole
+// vectors.
 constexpr int kMostLines = 2 * kSegmentCells + 4;
 
-// The lines of one family that a path meets: x, y or x + y = line, one after the other.
+// Lines of one family that a path meets: x, y or x + y = line, one after the other.
 struct LineFamily {
   int step;                      // from one to the next
   int before;                    // the last line before the segment
   double distances[kMostLines];  // to it and to those behind it
 
-  // position: across the lines, where the segment begins; `count` distances are wanted.
+  // position: of the segment's beginning across the lines. count: of distances, at most kMostLines.
   LineFamily(double position, double speed, double first_distance, int count) : step(speed > 0 ? 1 : -1) {
     if (std::abs(speed) < kParallel) {
       before = floor_to_int(position) + (step > 0 ? 0 : 1);
@@ -44,18 +43,18 @@ struct LineFamily {
     for (int k = 0; k < count; ++k) distances[k] = (line(k) - position) * pace;
   }
   int line(int k) const { return before + k * step; }
-  // The path lies between this line and the next higher one before it meets line k.
+  // Returns the line below the path before it meets line k.
   int lower_line(int k) const { return line(k) - (step > 0 ? 1 : 0); }
 };
 
-// First corner of the square window over `segments` segments from `segment` on, relative to the start's cell.
+// Returns the first corner of a window as window_corner does, but not wrapped.
 glm::ivec2 unwrapped_corner(const SlicePath& path, int segment, int segments) {
   const double near = segment * path.step, far = (segment + segments) * path.step;
   const glm::dvec2 o = path.origin, d = path.direction;
   return {floor_to_int(o.x + (d.x < 0 ? far : near) * d.x), floor_to_int(o.y + (d.y < 0 ? far : near) * d.y)};
 }
 
-// i modulo n, for paths of up to 2³¹ texels: a division of integers takes longer.
+// Returns i modulo n, for paths of up to 2³¹ texels; faster than a division of integers.
 int wrap_far(int i, int n, double inverse_n) {
   const int rest = i - floor_to_int(i * inverse_n) * n;
   return rest < 0 ? rest + n : rest >= n ? rest - n : rest;
@@ -69,22 +68,23 @@ SlicePath make_slice_path(const glm::dvec2& origin, double azimuth, bool starts_
   return {origin, direction, step, starts_in_facet};
 }
 
-glm::ivec2 window_corner(const HeightPyramid& field, const SlicePath& path, int segment, int segments) {
+glm::ivec2 window_corner(const HeightPyramid& pyramid, const SlicePath& path, int segment, int segments) {
   const glm::ivec2 corner = unwrapped_corner(path, segment, segments);
-  if (!field.wrap) return corner;
-  return {wrap_far(corner.x, field.width, field.inverse_width),
-          wrap_far(corner.y, field.height, field.inverse_height)};
+  if (!pyramid.wrap) return corner;
+  return {wrap_far(corner.x, pyramid.width, pyramid.inverse_width),
+          wrap_far(corner.y, pyramid.height, pyramid.inverse_height)};
 }
 
 glm::dvec2 segment_begin(const SlicePath& path, int segment) {
   return path.origin + segment * path.step * path.direction - glm::dvec2(unwrapped_corner(path, segment, 1));
 }
 
-void find_crossings(const HeightPyramid& field, const SlicePath& path, int segment, SegmentCrossings& found) {
+void find_crossings(const HeightPyramid& pyramid, const SlicePath& path, int segment,
+                    SegmentCrossings& found) {
   const double near = segment * path.step, end = path.step + kOverlap;
   const glm::dvec2 d = path.direction, p = segment_begin(path, segment);
   const double first = segment == 0 ? kOverlap : -kOverlap;
-  const int pitch = static_cast<int>(field.heights.pitch);
+  const int pitch = static_cast<int>(pyramid.heights.pitch);
   // Columns, rows and diagonals, whose edges run along y, along x, and from (i, j + 1) to (i + 1, j).
   constexpr int kStraight = kSegmentCells + 4;
   const LineFamily families[3] = {
@@ -105,7 +105,7 @@ void find_crossings(const HeightPyramid& field, const SlicePath& path, int segme
     found.crossings[count] = {texel, texel, 0, HUGE_VALF};
     found.facets[count++] = {static_cast<int8_t>(x), static_cast<int8_t>(y), 0, 0};
   }
-  // Which family is next follows no pattern: chosen without branches, as all that depends on it.
+  // Chooses the next family without branches: it follows no pattern.
   int column = next[0], row = next[1], diagonal = next[2];
   for (;;) {
     const double to_column = families[0].distances[column], to_row = families[1].distances[row],
@@ -130,29 +130,29 @@ void find_crossings(const HeightPyramid& field, const SlicePath& path, int segme
   found.count = count;
 }
 
-const ReadySegments& ready_segments(const HeightPyramid& field, const SlicePaths& paths) {
-  ReadySegments& ready = *paths.ready;
-  std::call_once(ready.made, [&] {
+const CachedSegments& cached_segments(const HeightPyramid& pyramid, const SlicePaths& paths) {
+  CachedSegments& cache = *paths.cache;
+  std::call_once(cache.made, [&] {
     SegmentCrossings found;
-    ready.first.push_back(0);
+    cache.first.push_back(0);
     for (const SlicePath& path : paths.paths) {
-      for (int segment = 0; segment < ready.per_path; ++segment) {
-        for (int level = 0; level < kSkipLevels; ++level) {
-          const int segments = kSkipSegments[level];
-          ready.corners.push_back(segment % segments == 0 ? window_corner(field, path, segment, segments)
+      for (int segment = 0; segment < cache.per_path; ++segment) {
+        for (int level = 0; level < kMipLevels; ++level) {
+          const int segments = kMipSegments[level];
+          cache.corners.push_back(segment % segments == 0 ? window_corner(pyramid, path, segment, segments)
                                                           : glm::ivec2(0));
         }
-        find_crossings(field, path, segment, found);
-        ready.crossings.insert(ready.crossings.end(), found.crossings.begin(),
+        find_crossings(pyramid, path, segment, found);
+        cache.crossings.insert(cache.crossings.end(), found.crossings.begin(),
                                found.crossings.begin() + found.count);
-        ready.facets.insert(ready.facets.end(), found.facets.begin(), found.facets.begin() + found.count);
-        ready.first.push_back(static_cast<uint32_t>(ready.crossings.size()));
+        cache.facets.insert(cache.facets.end(), found.facets.begin(), found.facets.begin() + found.count);
+        cache.first.push_back(static_cast<uint32_t>(cache.crossings.size()));
       }
     }
-    ready.crossings.shrink_to_fit();
-    ready.facets.shrink_to_fit();
+    cache.crossings.shrink_to_fit();
+    cache.facets.shrink_to_fit();
   });
-  return ready;
+  return cache;
 }
 
 }  // namespace hemibake

@@ -1,16 +1,16 @@
-// What a texel sees along its slices, piece by piece.
+// Lists the view of a texel along its slices, interval by interval.
 #pragma once
 
 #include <vector>
 
 #include "surface/surface.h"
-#include "tracers/slice/walk.h"
+#include "tracers/slice/traversal.h"
 #include "tracers/tracer.h"
 
 namespace hemibake {
 
-// One record per stretch seen by a lane of a packet of texels, and one per azimuth for its sky: all of what
-// the links are a sample of. `view` has stretches.
+// Returns one record per interval that a lane of a packet of texels sees, and one per azimuth for its sky:
+// the whole that form factors are a sample of. view: traced with Query::kAllIntervals.
 std::vector<RayRecord> replay_slices(const Surface& surface, const SlicePaths& paths,
                                      const SlicePacket& packet, const PacketView& view, size_t lane);
 

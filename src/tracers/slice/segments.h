@@ -1,4 +1,4 @@
-// The segments of one path after another: those kept ready, and those beyond, found when they are asked for.
+// Hands out the segments of one path after another: cached ones, and those beyond, found when asked for.
 #pragma once
 
 #include <array>
@@ -13,36 +13,36 @@ struct SegmentView {
   const FacetBefore* facets;  // one per crossing
 };
 
-// For one thread. What it returns is good until the next call.
+// For one thread. Returned segments are valid until the next call.
 class SegmentSource {
  public:
-  SegmentSource(const HeightPyramid& field, const SlicePaths& paths)
-      : field_(field), paths_(paths), ready_(ready_segments(field, paths)) {}
+  SegmentSource(const HeightPyramid& pyramid, const SlicePaths& paths)
+      : pyramid_(pyramid), paths_(paths), cache_(cached_segments(pyramid, paths)) {}
 
   void begin_path(size_t index) {
     path_ = &paths_.paths[index];
     path_index_ = index;
-    first_ready_ = index * static_cast<size_t>(ready_.per_path);
+    first_cached_ = index * static_cast<size_t>(cache_.per_path);
   }
   const SlicePath& path() const { return *path_; }
 
-  // window_corner of the window of a level that begins with `segment`.
+  // Returns the window_corner of a level's window that begins with `segment`.
   glm::ivec2 corner(int segment, int level) const {
-    if (segment >= ready_.per_path) return window_corner(field_, *path_, segment, kSkipSegments[level]);
-    return ready_.corners[ready_index(segment) * kSkipLevels + static_cast<size_t>(level)];
+    if (segment >= cache_.per_path) return window_corner(pyramid_, *path_, segment, kMipSegments[level]);
+    return cache_.corners[cached_index(segment) * kMipLevels + static_cast<size_t>(level)];
   }
 
   SegmentView crossings(int segment) {
-    if (segment < ready_.per_path) {
-      const size_t index = ready_index(segment);
-      const uint32_t first = ready_.first[index], count = ready_.first[index + 1] - first;
-      return {{ready_.crossings.data() + first, count}, ready_.facets.data() + first};
+    if (segment < cache_.per_path) {
+      const size_t index = cached_index(segment);
+      const uint32_t first = cache_.first[index], count = cache_.first[index + 1] - first;
+      return {{cache_.crossings.data() + first, count}, cache_.facets.data() + first};
     }
     FarSegment& far = far_segments_[static_cast<size_t>(segment) % far_segments_.size()];
     if (far.path != path_index_ || far.segment != segment) {
       far.path = path_index_;
       far.segment = segment;
-      find_crossings(field_, *path_, segment, far.found);
+      find_crossings(pyramid_, *path_, segment, far.found);
     }
     return {{far.found.crossings.data(), far.found.count}, far.found.facets.data()};
   }
@@ -54,14 +54,14 @@ class SegmentSource {
     SegmentCrossings found;
   };
 
-  size_t ready_index(int segment) const { return first_ready_ + static_cast<size_t>(segment); }
+  size_t cached_index(int segment) const { return first_cached_ + static_cast<size_t>(segment); }
 
-  const HeightPyramid& field_;
+  const HeightPyramid& pyramid_;
   const SlicePaths& paths_;
-  const ReadySegments& ready_;
+  const CachedSegments& cache_;
   const SlicePath* path_ = nullptr;
-  size_t path_index_ = 0, first_ready_ = 0;
-  std::array<FarSegment, 128> far_segments_;  // packets near each other ask for the same ones
+  size_t path_index_ = 0, first_cached_ = 0;
+  std::array<FarSegment, 128> far_segments_;  // neighbouring packets share them
 };
 
 }  // namespace hemibake

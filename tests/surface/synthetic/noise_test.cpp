@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "sampling/low_discrepancy.h"
+
 namespace hemibake {
 namespace {
 
@@ -16,8 +18,8 @@ TEST(Noise, HashIsTheSameEverywhere) {
 }
 
 TEST(Noise, UnitNumbersCoverTheirRangeEvenly) {
-  EXPECT_EQ(unit_from_bits(0), 0);
-  EXPECT_LT(unit_from_bits(~uint64_t{0}), 1);
+  EXPECT_EQ(unit_interval(0), 0);
+  EXPECT_LT(unit_interval(~uint64_t{0}), 1);
   constexpr int kSide = 300, kCells = 10;
   int counts[kCells] = {};
   for (int y = 0; y < kSide; ++y)

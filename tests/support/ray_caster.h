@@ -1,5 +1,5 @@
-// An independent judge of rays on a height map: a walk in double precision over the triangles a ray passes
-// above, one after another, without any tree. Slow and simple.
+// Casts rays over a height map, to judge the tracers: in double precision, over one triangle after another,
+// without any tree. Slow and simple.
 #pragma once
 
 #include <algorithm>
@@ -12,18 +12,18 @@
 
 namespace hemibake {
 
-struct WalkHit {
+struct CastHit {
   uint32_t facet;
   double distance_texels;
 };
 
-// start: texels, centres at integers, z in texels. Wrapping maps only. nullopt: sky.
-inline std::optional<WalkHit> walk_ray(const Surface& surface, glm::dvec3 start, glm::dvec3 direction,
+// Follows a ray over a wrapping map; nullopt: sky. start: texels, centres at integers, z in texels.
+inline std::optional<CastHit> cast_ray(const Surface& surface, glm::dvec3 start, glm::dvec3 direction,
                                        double longest_texels = 1e6) {
   const double top = height_range_m(surface) / surface.texel_size_m;
   const double speed[3] = {direction.x, direction.y, direction.x + direction.y};
   const double place[3] = {start.x, start.y, start.x + start.y};
-  // Next crossing of lines x = n, y = n, x + y = n (the diagonals).
+  // Returns the next crossing of lines x = n, y = n, x + y = n (the diagonals).
   const auto next_crossing = [&](double t) {
     double next = HUGE_VAL;
     for (int k = 0; k < 3; ++k) {
@@ -60,8 +60,8 @@ inline std::optional<WalkHit> walk_ray(const Surface& surface, glm::dvec3 start,
                                     (corners[2].z - corners[0].z) * (py - base_y)));
     };
     const double gap_begin = gap(t), gap_end = gap(end);
-    if (gap_begin < 0) return WalkHit{facet, t};
-    if (gap_end < 0) return WalkHit{facet, t + (end - t) * gap_begin / (gap_begin - gap_end)};
+    if (gap_begin < 0) return CastHit{facet, t};
+    if (gap_end < 0) return CastHit{facet, t + (end - t) * gap_begin / (gap_begin - gap_end)};
     t = end;
   }
   return std::nullopt;
