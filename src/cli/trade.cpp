@@ -1,22 +1,21 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/bake_options.h"
 #include "cli/bake_surface.h"
+#include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/common_options.h"
+#include "cli/print/study.h"
 #include "cli/result_folder.h"
 #include "cli/validators.h"
 #include "io/table_io.h"
 #include "trade/study.h"
 #include "trade/trade_file.h"
-#include "trade/trade_pictures.h"
 
 namespace hemibake {
 namespace {
@@ -43,9 +42,9 @@ int run_trade(const CLI::App& app, TradeOptions& options) {
 
   StudyOptions study;
   study.folder = options.folder;
-  study.provenance = make_provenance(command_line(process_arguments()), options.bake.map);
+  study.provenance = make_provenance(this_command_line(), options.bake.map);
   record_map_options(options.bake, study.provenance);
-  // In the child: threads are not to be started here.
+  // Runs in the child: this process must not start threads.
   study.load = [&options] {
     apply_common_options(options.common);
     return load_bake_map(options.bake).surface;
@@ -54,14 +53,16 @@ int run_trade(const CLI::App& app, TradeOptions& options) {
   study.reference.memory_bytes = static_cast<size_t>(options.memory_gib * 1024 * 1024 * 1024);
   const Study result = run_study(study);
 
-  nlohmann::ordered_json json = json_from_study(result, study.reference.effort, study.provenance);
-  json["pictures"] = write_trade_pictures(options.folder, json);
-  write_trade_csv(options.folder / "trade.csv", json);
+  const nlohmann::ordered_json json =
+      json_from_study(result, study.reference.effort, study.provenance, options.folder);
+  write_trade_csv(options.folder / "trade.csv", result);
   write_json(options.folder / "trade.json", json);
-  print_result(
-      options.common, json,
-      describe_study(json) + fmt::format("{} runs, {} of them on record from before\n",
-                                         result.runs.size() + 1, result.runs.size() + 1 - result.made_now));
+  const size_t runs = result.runs.size() + 1;
+  print_result(options.common, json,
+               text_of_study(result) +
+                   fmt::format("{0} runs, {1} of them on record from before; `hemibake report {2} -o "
+                               "study.html` plots error against time\n",
+                               runs, runs - result.made_now, options.folder.string()));
   return 0;
 }
 
@@ -71,7 +72,7 @@ CommandBody setup_trade(CLI::App& app) {
   auto options = std::make_shared<TradeOptions>();
   add_surface_options(app, options->bake);
   app.add_option("-o,--output", options->folder,
-                 "folder for trade.json, trade.csv and pictures; made if new. What was done there before, "
+                 "folder for trade.json, trade.csv and error maps; made if new. What was done there before, "
                  "with the same map and options, is not done again")
       ->required()
       ->option_text("DIR")
