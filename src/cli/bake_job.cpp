@@ -7,6 +7,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "cli/command_line.h"
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -50,7 +51,7 @@ void refuse_beyond_memory(const BakeJob& job, const BakePlan& plan) {
 
 // Everything that decides the bytes of the result.
 Provenance provenance_of(const BakeOptions& options, const Surface& surface) {
-  Provenance p = make_provenance(command_line(process_arguments()), options.map);
+  Provenance p = make_provenance(this_command_line(), options.map);
   record_map_options(options, p);
   p["texel_size_m"] = surface.texel_size_m;
   p["tracer"] = options.tracer;

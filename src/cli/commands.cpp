@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <new>
 
+#include "cli/command_line.h"
 #include "core/error.h"
 
 namespace hemibake {
@@ -94,6 +95,7 @@ int run_guarded(const CommandBody& body) {
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
+  set_command_line(argc, argv);
   CLI::App app{"hemibake " HEMIBAKE_VERSION
                ": bakes the light on a height map and fits models of it for shaders."};
   app.set_version_flag("--version", HEMIBAKE_VERSION);

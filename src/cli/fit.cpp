@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "cli/name_file.h"
@@ -39,7 +40,7 @@ std::string describe(const NamedFit& named) {
 
 // `input` and `input_sha256` name every input, in order.
 Provenance provenance_of(const std::vector<std::string>& paths) {
-  Provenance provenance = make_provenance(command_line(process_arguments()), paths[0]);
+  Provenance provenance = make_provenance(this_command_line(), paths[0]);
   for (size_t i = 1; i < paths.size(); ++i) {
     const Provenance next = make_provenance("", paths[i]);
     for (const char* name : {"input", "input_sha256"}) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/render_options.h"
 #include "cli/render_wall.h"
@@ -74,7 +75,7 @@ int run_render(RenderOptions& options) {
   apply_common_options(options.common);
   settle_render_options(options);
   BakeFile file = read_bake(options.bake);
-  const Provenance provenance = make_provenance(command_line(process_arguments()), options.bake);
+  const Provenance provenance = make_provenance(this_command_line(), options.bake);
   const ResultFolder folder(options.folder);
   check_output_path(options.folder / kRecord);
 

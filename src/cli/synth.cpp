@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "cli/validators.h"
@@ -61,7 +62,7 @@ int run(const SynthOptions& options) {
   if (options.angle_deg) map_options.angle_rad = *options.angle_deg * kPi / 180;
 
   const SyntheticMap map = synthesize(kind.kind, map_options);
-  Provenance provenance = make_provenance(command_line(process_arguments()));
+  Provenance provenance = make_provenance(this_command_line());
   provenance["recommended_amplitude_m"] = map.recommended_amplitude_m;
   write_height_map(options.output, map.heights, provenance);
 
