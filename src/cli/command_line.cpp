@@ -2,7 +2,6 @@
 
 #include <initializer_list>
 #include <string_view>
-#include <vector>
 
 namespace hemibake {
 namespace {
@@ -35,14 +34,9 @@ std::string shell_quoted(const std::string& argument) {
   return quoted.append("'");
 }
 
-std::string& stored_line() {
-  static std::string line = "hemibake";
-  return line;
-}
-
 }  // namespace
 
-std::string command_line(std::span<const std::string> arguments) {
+std::string command_line(const std::vector<std::string>& arguments) {
   std::string line = "hemibake";
   for (size_t i = 1; i < arguments.size(); ++i) {
     if (const int left_out = arguments_left_out(arguments[i])) {
@@ -53,11 +47,5 @@ std::string command_line(std::span<const std::string> arguments) {
   }
   return line;
 }
-
-void set_command_line(int argc, const char* const* argv) {
-  stored_line() = command_line(std::vector<std::string>(argv, argv + argc));
-}
-
-const std::string& this_command_line() { return stored_line(); }
 
 }  // namespace hemibake

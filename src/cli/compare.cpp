@@ -1,14 +1,12 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "cli/commands.h"
-#include "cli/common_options.h"
+#include "cli/options/command.h"
 #include "fitting/candidates.h"
 #include "io/curves_file.h"
 
@@ -16,14 +14,12 @@ namespace hemibake {
 namespace {
 
 struct CompareOptions {
-  CommonOptions common;
   std::vector<std::string> curves;
 };
 
 nlohmann::json json_of(const Score& score) { return {{"rms", score.rms}, {"max_error", score.max_error}}; }
 
-int run_compare(const CompareOptions& options) {
-  apply_common_options(options.common);
+int run_compare(const CompareOptions& options, const Invocation& invocation) {
   std::vector<Curves> sets;
   for (const std::string& path : options.curves) sets.push_back(read_curves(path));
 
@@ -57,19 +53,20 @@ int run_compare(const CompareOptions& options) {
                        {"aicc", comparison.aicc ? nlohmann::json(*comparison.aicc) : nlohmann::json(nullptr)},
                        {"errors", errors}});
   }
-  print_result(options.common, {{"models", results}}, text + "\n");
+  invocation.print({{"models", results}}, text + "\n");
   return 0;
 }
 
 }  // namespace
 
-CommandBody setup_compare(CLI::App& app) {
+CommandSetup setup_compare() {
   auto options = std::make_shared<CompareOptions>();
-  app.add_option("CURVES", options->curves,
-                 "curves, CSV: each model is fitted to each of them, and to all the others together")
-      ->required();
-  add_common_options(app, options->common);
-  return [options] { return run_compare(*options); };
+  CommandSetup setup;
+  setup.fields = {
+      required(option("CURVES", texts(options->curves),
+                      "curves, CSV: each model is fitted to each of them, and to all the others together"))};
+  setup.run = [options](const Invocation& invocation) { return run_compare(*options, invocation); };
+  return setup;
 }
 
 }  // namespace hemibake

@@ -6,13 +6,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cli/bake_surface.h"
-#include "cli/name_file.h"
-#include "cli/retrace.h"
+#include "bake/record.h"
+#include "bake/retrace.h"
 #include "core/color.h"
 #include "core/constants.h"
+#include "core/context.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 #include "curves/curves.h"
 #include "fitting/fitted_model.h"
 #include "fitting/models.h"
@@ -25,6 +24,12 @@ namespace hemibake {
 namespace {
 
 constexpr int kBins = 100;
+
+// How the bake was made.
+struct Recorded {
+  MapSettings map;
+  BakeSettings bake;
+};
 
 Albedo read_albedo(const RenderOptions& options, const Bake& bake) {
   if (const auto constant = albedo_from_text(options.albedo)) return {*constant, {}};
@@ -88,7 +93,7 @@ std::optional<ShadingModel> find_model(const RenderOptions& options, const Bake&
     try {
       fits.fits = fit_model(options.model, make_curves(bake, kBins), Abscissa::center, Weights::none);
     } catch (const std::runtime_error& error) {
-      throw_if_interrupted();
+      throw_if_cancelled();
       reason = error.what();
       return std::nullopt;
     }
@@ -148,12 +153,12 @@ PictureError error_of_projection(const Sky& sky, const Surface& surface, const L
 }
 
 // Sends sky and sun round over the links of the bake.
-void relight(const RenderOptions& options, const BakeFile& file, const BakeOptions& tracing, const Sky& sky,
+void relight(const RenderOptions& options, const BakeFile& file, const Recorded& recorded, const Sky& sky,
              const std::optional<Sun>& sun, RenderedScene& result) {
   ShadedScene& wall = result.wall;
   const Surface& surface = *wall.surface;
-  const LightTransport seen =
-      options.links.empty() ? retrace(tracing) : visibility_from_links(options.links, file);
+  const LightTransport seen = options.links.empty() ? retrace(recorded.map, recorded.bake, current_context())
+                                                    : transport_from_links(options.links, file);
   const bool on_facets = !seen.patch_form_factors.empty();
   const PatchSet patches = make_patches(surface, on_facets ? PatchKind::kFacets : PatchKind::kTexels);
   if (seen.final_gather.columns != patches.count)
@@ -174,7 +179,7 @@ void relight(const RenderOptions& options, const BakeFile& file, const BakeOptio
   }
   const size_t stored = file.bake.irradiance.size();
   wall.truth = relight_over_links(seen, light, albedo_of_patches(surface, wall.albedo, patches),
-                                  stored > 1 ? static_cast<int>(stored) - 1 : BakeOptions().bounces,
+                                  stored > 1 ? static_cast<int>(stored) - 1 : BakeSettings().bounces,
                                   sky.uniform && !sun ? std::optional(kPi) : std::nullopt);
 }
 
@@ -184,7 +189,7 @@ nlohmann::ordered_json json_from_error(const PictureError& error) {
   return {{"bias_over_mean", error.bias}, {"rms_over_mean", error.rms}, {"largest_over_mean", error.largest}};
 }
 
-RenderedScene shade_scene(const RenderOptions& options, BakeFile file) {
+RenderedScene shade_scene(const RenderOptions& options, BakeFile file, const Context&) {
   RenderedScene result;
   ShadedScene& wall = result.wall;
   nlohmann::ordered_json& light = result.light;
@@ -194,10 +199,11 @@ RenderedScene shade_scene(const RenderOptions& options, BakeFile file) {
   const std::optional<Sun> sun = sun_from_text(options.sun);
   const bool runs_again = !wall.albedo.map.empty() || !sky.uniform || sun;
 
-  BakeOptions tracing;
+  Recorded recorded;
   try {
-    tracing = tracing_options_from(file, options.bake);
-    wall.surface = load_bake_map(tracing).surface;
+    recorded = {recorded_map_settings(file.provenance, options.bake),
+                recorded_bake_settings(file.provenance, options.bake)};
+    wall.surface = load_map(recorded.map).surface;
     if (wall.surface->width() != bake.width || wall.surface->height() != bake.height)
       throw InputError(options.bake.string() + ": its map has another size, expected the bake's");
   } catch (const InputError& error) {
@@ -212,7 +218,7 @@ RenderedScene shade_scene(const RenderOptions& options, BakeFile file) {
   if (!no_model.empty()) light["model"] = no_model;
 
   if (runs_again) {
-    relight(options, file, tracing, sky, sun, result);
+    relight(options, file, recorded, sky, sun, result);
   } else if (!bake.irradiance.empty()) {
     wall.truth = relight_constant(bake.irradiance, wall.albedo.constant);
   }

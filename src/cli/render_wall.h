@@ -18,6 +18,6 @@ nlohmann::ordered_json json_from_error(const PictureError& error);
 
 // Reads what the options name. Finds the map of the bake where it can; throws InputError where light asked
 // for needs the map and it is not there, and for everything that cannot be used.
-RenderedScene shade_scene(const RenderOptions& options, BakeFile file);
+RenderedScene shade_scene(const RenderOptions& options, BakeFile file, const Context& context);
 
 }  // namespace hemibake

@@ -70,4 +70,7 @@ RefereeCheck check_against_referee(const Surface& surface, const Bake& bake,
 // kOutside where any row is, else kUndecided where any is.
 RefereeVerdict worst_verdict(const std::vector<RefereeRow>& rows);
 
+// Returns whether no row is outside its tolerance.
+bool has_passed(const RefereeCheck& check);
+
 }  // namespace hemibake

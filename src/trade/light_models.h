@@ -21,7 +21,7 @@ struct FittedModels {
   std::optional<BoundedModel> bounded;
 };
 
-// Fits the models of 2018 and the bounded one at bin centres, unweighted. Throws Interrupted.
+// Fits the models of 2018 and the bounded one at bin centres, unweighted. Throws Cancelled.
 FittedModels fit_light_models(const Curves& curves);
 
 struct LightModel {
@@ -39,7 +39,7 @@ std::span<const LightModel> light_models();
 
 struct LightModelErrors {
   std::string model;
-  std::array<ErrorStatistics, kTradeAlbedos.size()> error;  // of E/π at each of kTradeAlbedos
+  std::array<ErrorStatistics, kJudgedAlbedos.size()> error;  // of E/π at each of kJudgedAlbedos
 };
 
 // Evaluates every model that has its constants on the AO of `planes`, against the true E/π. The cubic takes

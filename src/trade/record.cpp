@@ -67,7 +67,7 @@ std::optional<CurveErrors> curve_errors_from(const ordered_json& json) {
 ordered_json json_of(const std::vector<LightModelErrors>& models) {
   ordered_json json = ordered_json::object();
   for (const LightModelErrors& model : models)
-    for (size_t a = 0; a < kTradeAlbedos.size(); ++a)
+    for (size_t a = 0; a < kJudgedAlbedos.size(); ++a)
       json[model.model][named_planes()[kLightPlanes + a].name] = json_of(model.error[a]);
   return json;
 }
@@ -76,7 +76,7 @@ std::vector<LightModelErrors> light_model_errors_from(const ordered_json& json) 
   std::vector<LightModelErrors> models;
   for (const auto& [name, errors] : json.items()) {
     LightModelErrors& model = models.emplace_back(LightModelErrors{name, {}});
-    for (size_t a = 0; a < kTradeAlbedos.size(); ++a)
+    for (size_t a = 0; a < kJudgedAlbedos.size(); ++a)
       model.error[a] = statistics_from(errors.at(named_planes()[kLightPlanes + a].name));
   }
   return models;

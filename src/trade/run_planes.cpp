@@ -14,9 +14,9 @@ const std::array<NamedPlane, kPlaneCount>& named_planes() {
     all[kAoPlane] = {"ao", "uniform visible fraction", &RunPlanes::uniform, 0};
     all[kDirectPlane] = {"direct", "E0/pi, the cosine-weighted visible fraction", &RunPlanes::cosine, 0};
     all[kFirstPlane] = {"first", "E1/pi, one bounce at albedo 1", &RunPlanes::first_bounce, 0};
-    for (size_t a = 0; a < kTradeAlbedos.size(); ++a)
-      all[kLightPlanes + a] = {fmt::format("light.{:02.0f}", 100 * kTradeAlbedos[a]),
-                               fmt::format("E/pi, all bounces at albedo {:g}", kTradeAlbedos[a]), nullptr, a};
+    for (size_t a = 0; a < kJudgedAlbedos.size(); ++a)
+      all[kLightPlanes + a] = {fmt::format("light.{:02.0f}", 100 * kJudgedAlbedos[a]),
+                               fmt::format("E/pi, all bounces at albedo {:g}", kJudgedAlbedos[a]), nullptr, a};
     return all;
   }();
   return planes;
@@ -27,12 +27,12 @@ void add_bounces(const std::vector<Grid<float>>& irradiance, RunPlanes& planes) 
   const size_t texels = irradiance[0].size();
   planes.first_bounce = irradiance[1];
   for (float& value : planes.first_bounce.values) value /= static_cast<float>(kPi);
-  for (size_t a = 0; a < kTradeAlbedos.size(); ++a) {
+  for (size_t a = 0; a < kJudgedAlbedos.size(); ++a) {
     planes.all_bounces[a] = Grid<float>(irradiance[0].width, irradiance[0].height);
     for (size_t i = 0; i < texels; ++i) {
       double sum = 0;
       for (size_t b = irradiance.size(); b-- > 0;)
-        sum = sum * kTradeAlbedos[a] + static_cast<double>(irradiance[b][i]);
+        sum = sum * kJudgedAlbedos[a] + static_cast<double>(irradiance[b][i]);
       planes.all_bounces[a][i] = static_cast<float>(sum / kPi);
     }
   }

@@ -5,7 +5,7 @@
 
 #include "core/constants.h"
 #include "core/error.h"
-#include "core/interrupt.h"
+#include "core/context.h"
 #include "core/progress.h"
 #include "io/table_io.h"
 #include "trade/child_process.h"
@@ -101,7 +101,7 @@ Study run_study(const StudyOptions& options) {
   const std::vector<TradeRun> sweep = make_sweep(options.reference.effort, study.reference.can_halve);
   Progress progress("trade", sweep.size(), "run");
   for (const TradeRun& run : sweep) {
-    throw_if_interrupted();
+    throw_if_cancelled();
     // The reference is the same bytes whenever it is made from this key.
     key["method"] = run.method;
     key["settings"] = json_from_settings(run.settings);

@@ -31,7 +31,7 @@ struct Study {
   size_t made_now = 0;          // runs and reference; the others were on record
 };
 
-// Makes every run of the sweep that is not on record. Throws Interrupted; completed runs stay on record.
+// Makes every run of the sweep that is not on record. Throws Cancelled; completed runs stay on record.
 Study run_study(const StudyOptions& options);
 
 }  // namespace hemibake

@@ -120,7 +120,7 @@ const char* effort_name(Effort effort) {
 ordered_json json_from_study(const Study& study, Effort effort, const Provenance& provenance,
                              const fs::path& folder) {
   ordered_json json = {
-      {"provenance", provenance}, {"effort", effort_name(effort)}, {"albedos", kTradeAlbedos}};
+      {"provenance", provenance}, {"effort", effort_name(effort)}, {"albedos", kJudgedAlbedos}};
   for (const NamedPlane& named : named_planes()) json["planes"][named.name] = named.description;
   json["reference"] = study.reference;
   json["reference"]["precision"] = precision_json(study);

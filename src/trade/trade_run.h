@@ -37,7 +37,7 @@ struct RunDescription {
 
 struct TradeRun : RunDescription {
   bool keeps_planes = false;  // written out with their error maps; those of representative runs are too
-  // direct: the true E₀ (0..π), for methods that take it as given. Throws Interrupted.
+  // direct: the true E₀ (0..π), for methods that take it as given. Throws Cancelled.
   std::function<RunPlanes(const Surface& surface, const Grid<float>& direct)> perform;
 };
 

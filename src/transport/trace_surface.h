@@ -33,7 +33,7 @@ struct LightTransport {
 
 // Traces every texel, and every patch if `with_links`: only then are form factors kept. The same bytes at any
 // thread count. spill: where form factors go that memory does not hold; none: they stay in memory. Throws
-// Interrupted between blocks of rows.
+// Cancelled between blocks of rows.
 LightTransport trace_surface(const Tracer& tracer, bool with_links,
                              const std::shared_ptr<SpillFile>& spill = nullptr);
 

@@ -25,11 +25,5 @@ TEST(CommandLine, HoldsNothingThatChangesNoByte) {
   EXPECT_EQ(line_of({}), "hemibake");
 }
 
-TEST(CommandLine, OfThisProcessIsTheOneSet) {
-  const char* arguments[] = {"./hemibake", "synth", "bricks", "-o", "a.exr"};
-  set_command_line(5, arguments);
-  EXPECT_EQ(this_command_line(), "hemibake synth bricks");
-}
-
 }  // namespace
 }  // namespace hemibake

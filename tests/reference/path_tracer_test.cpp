@@ -10,6 +10,7 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "support/threads.h"
 #include "reference/lit_path_tracer.h"
 #include "reference/random.h"
 #include "surface/facets.h"
