@@ -9,11 +9,11 @@
 #include <new>
 
 #include "bake/settings.h"
+#include "cli/command_line.h"
 #include "cli/options/parser.h"
 #include "cli/print/progress_line.h"
 #include "cli/signals.h"
 #include "core/error.h"
-#include "io/provenance.h"
 
 namespace hemibake {
 

@@ -1,18 +1,16 @@
 #include <fmt/format.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "bake/record.h"
 #include "cli/options/bake_options.h"
+#include "cli/print/study.h"
 #include "cli/result_folder.h"
 #include "io/table_io.h"
 #include "trade/study.h"
 #include "trade/trade_file.h"
-#include "trade/trade_pictures.h"
 
 namespace hemibake {
 namespace {
@@ -42,19 +40,21 @@ int run_trade(TradeOptions& options, const Invocation& invocation) {
   study.folder = options.folder;
   study.provenance = make_provenance(invocation.context.command);
   record_map(options.map, hash_files(options.map), study.provenance);
-  // In the child: threads are not to be started here.
+  // Runs in the child: this process must not start threads.
   study.load = [&options] { return load_map(options.map).surface; };
   study.reference.effort = effort_of(options.effort);
   study.reference.memory_bytes = static_cast<size_t>(options.memory_gib * 1024 * 1024 * 1024);
   const Study result = run_study(study);
 
-  nlohmann::ordered_json json = json_from_study(result, study.reference.effort, study.provenance);
-  json["pictures"] = write_trade_pictures(options.folder, json);
-  write_trade_csv(options.folder / "trade.csv", json);
+  const nlohmann::ordered_json json =
+      json_from_study(result, study.reference.effort, study.provenance, options.folder);
+  write_trade_csv(options.folder / "trade.csv", result);
   write_json(options.folder / "trade.json", json);
-  invocation.print(json, describe_study(json) + fmt::format("{} runs, {} of them on record from before\n",
-                                                            result.runs.size() + 1,
-                                                            result.runs.size() + 1 - result.made_now));
+  const size_t runs = result.runs.size() + 1;
+  invocation.print(json, text_of_study(result) +
+                             fmt::format("{0} runs, {1} of them on record from before; `hemibake report {2}` "
+                                         "plots error against time\n",
+                                         runs, runs - result.made_now, options.folder.string()));
   return 0;
 }
 
@@ -67,7 +67,7 @@ CommandSetup setup_trade() {
   append(setup.fields,
          {in_group(shown_as(required(output_option(
                                 options->folder,
-                                "folder for trade.json, trade.csv and pictures; made if new. What was done "
+                                "folder for trade.json, trade.csv and error maps; made if new. What was done "
                                 "there before, with the same map and options, is not done again")),
                             "DIR"),
                    "Output"),

@@ -26,7 +26,7 @@ void append_vector_planes(std::vector<BasicPlane<Value>>& planes, const std::str
   planes.push_back({name + ".Z", &grid.values[0].z, 3});
 }
 
-// The channels of every plane that is there, to be written from or read into.
+// Lists the channels of every plane that is not empty, to be written from or read into.
 template <class Value, class BakeType>
 std::vector<BasicPlane<Value>> planes_of(BakeType& bake) {
   std::vector<BasicPlane<Value>> planes;
@@ -59,7 +59,7 @@ void check_sizes(const Bake& bake) {
   check_size(bake, bake.bent_normals, "bent");
 }
 
-// A bake with room for the planes whose channels are there; read_planes refuses what is there only in part.
+// Makes a bake with room for every plane that has a channel; read_planes refuses planes that are incomplete.
 Bake make_room(const fs::path& path, const ImageHeader& header) {
   const auto count = [&](std::string_view start) {
     return static_cast<size_t>(

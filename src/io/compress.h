@@ -1,16 +1,17 @@
-// Bytes made small and made text, for what is embedded in a page.
+// Bytes compressed and written as text, to be embedded in a page.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace hemibake {
 
-// A zlib stream (RFC 1950) at the highest compression; what browsers call "deflate".
+// Returns a zlib stream (RFC 1950) at the highest compression; browsers call it "deflate".
 std::string deflate_bytes(std::span<const uint8_t> bytes);
 
-// RFC 4648, with its padding, on one line.
+// Returns base64 (RFC 4648) with its padding, on one line. At most 2³¹ bytes.
 std::string base64(std::string_view bytes);
 
 }  // namespace hemibake

@@ -9,17 +9,16 @@
 namespace hemibake {
 namespace {
 
-constexpr double kEqualEdges =
-    1e-9;  // bin edges are written in full: only rounding by a spreadsheet is forgiven
+constexpr double kEqualEdges = 1e-9;  // edges are written in full: forgives rounding by a spreadsheet
 
-// Cells of one table by name, complaining with file and line.
+// Cells of one table by name; errors name file and line.
 class CellReader {
  public:
   CellReader(const Table& table, std::string path) : table_(table), path_(std::move(path)) {}
 
   bool has_column(const std::string& name) const { return find_column(table_, name).has_value(); }
 
-  // The cell, which has to be there and within lowest..highest.
+  // Returns the cell; fails where it is missing or outside lowest..highest.
   double number(size_t row, const std::string& column, double lowest, double highest = HUGE_VAL) const {
     const std::optional<size_t> index = find_column(table_, column);
     if (!index) throw InputError(fmt::format("{}: no column {}, expected one", path_, column));
@@ -33,8 +32,8 @@ class CellReader {
     return *cell;
   }
 
-  [[noreturn]] void fail(size_t row, const std::string& complaint) const {
-    throw InputError(fmt::format("{}:{}: {}", path_, row + 2, complaint));
+  [[noreturn]] void fail(size_t row, const std::string& fault) const {
+    throw InputError(fmt::format("{}:{}: {}", path_, row + 2, fault));
   }
 
  private:

@@ -1,6 +1,4 @@
-// Curves as CSV: one line per bin,
-//   bin,ao_low,ao_high,ao_mean,count,E00_mean,E00_stddev,E01_mean,E01_stddev,…
-// with count 0 and empty cells after it for an empty bin; irradiance 0..π.
+// CURVES.csv: one line per bin. src/io/README.md describes the file.
 #pragma once
 
 #include <filesystem>
@@ -12,9 +10,8 @@ namespace hemibake {
 
 Table table_from_curves(const Curves& curves);
 
-// Also takes the table of the published experiment: bin,E0,E1,…, irradiance means only, bins of equal width,
-// and ignores its columns of other names. Throws InputError "FILE:LINE: …, expected …"; `path` names the file
-// only.
+// Reads curves from a table of write_curves, or from that of Mayaux 2018: bin,E0,E1,…, means only, bins of
+// equal width; ignores other columns. Throws InputError "FILE:LINE: …, expected …". path: for errors only.
 Curves curves_from_table(const Table& table, const std::filesystem::path& path);
 
 Curves read_curves(const std::filesystem::path& path);

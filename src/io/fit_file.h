@@ -1,7 +1,4 @@
-// Fits as JSON: {"F0": FIT, "F1": FIT, …, "provenance": {…}}, each FIT {"model", "formula", "parameters":
-// {"A":
-// {"value", "stderr"}, …}, "covariance": rows, "rms", "max_error", "points", "aicc", "abscissa", "weights"}.
-// A stderr or aicc that does not exist (fitting/fit.h says when) is null.
+// FIT.json: fits by name, and their provenance. src/io/README.md describes the file.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +16,7 @@ struct FitFile {
 
 nlohmann::ordered_json json_from_fits(const FitFile& file);
 
-// Throws InputError "FILE: NAME: …, expected …"; `path` names the file only.
+// Throws InputError "FILE: NAME: …, expected …". path: for errors only.
 FitFile fits_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
 FitFile read_fits(const std::filesystem::path& path);

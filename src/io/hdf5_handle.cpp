@@ -11,7 +11,7 @@ struct Reason {
   int error_number = 0;
 };
 
-// Called for every entry of the error stack from the innermost on. Must not let an exception out.
+// Collects text and errno from an entry of the error stack; HDF5 calls it from the innermost entry outwards.
 herr_t collect_reason(unsigned depth, const H5E_error2_t* entry, void* reason_pointer) noexcept {
   Reason& reason = *static_cast<Reason*>(reason_pointer);
   const std::string_view text = entry->desc ? entry->desc : "";

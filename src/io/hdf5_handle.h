@@ -1,4 +1,4 @@
-// HDF5's identifiers closed by themselves, its failures as exceptions. Only for links_file.
+// RAII for HDF5 identifiers, exceptions for its failures. Only for links_file.
 #pragma once
 
 #include <hdf5.h>
@@ -19,7 +19,7 @@ class Hdf5Error : public std::runtime_error {
 // Throws the library's pending error.
 [[noreturn]] void throw_hdf5_error();
 
-// The result of a call; throws Hdf5Error where it is negative, which means failed.
+// Returns the result of a call; throws Hdf5Error where it is negative, which means failed.
 template <class Result>
 Result checked(Result result) {
   if (result < 0) throw_hdf5_error();
@@ -43,7 +43,7 @@ class Hdf5Silence {
 class Hdf5Handle {
  public:
   using Close = herr_t (*)(hid_t);
-  // Throws Hdf5Error where `id` says that the call which gave it failed.
+  // Throws Hdf5Error where `id` is negative: the call that returned it failed.
   Hdf5Handle(hid_t id, Close closer) : id_(checked(id)), close_(closer) {}
   ~Hdf5Handle() {
     if (id_ >= 0) close_(id_);
@@ -52,7 +52,7 @@ class Hdf5Handle {
   Hdf5Handle& operator=(Hdf5Handle&&) = delete;
 
   hid_t id() const { return id_; }
-  // Closes now; throws Hdf5Error where that fails.
+  // Closes; throws Hdf5Error where that fails.
   void close() { checked(close_(std::exchange(id_, -1))); }
 
  private:

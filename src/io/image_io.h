@@ -1,5 +1,5 @@
-// Images in and out, as numbers: no colour transform, no premultiplication, ever. Integer formats stand for
-// 0..1 (value / largest value), float formats for themselves. The one place that knows OpenImageIO.
+// Reads and writes images as numbers: no colour transform, no premultiplication, ever. Integer formats hold
+// 0..1 (value / largest value), float formats the values themselves.
 #pragma once
 
 #include <cstddef>
@@ -14,15 +14,15 @@
 
 namespace hemibake {
 
-// What an image says of itself. Reading it takes no memory that depends on the size it claims.
+// Reading a header takes no memory that depends on the size it claims.
 struct ImageHeader {
   int width = 0;
   int height = 0;
   std::vector<std::string> channels;
-  Provenance provenance;  // as given to the writing functions below; null where the file has none
+  Provenance provenance;  // as given to write_image; null where the file has none
 };
 
-// A channel lying in memory: the value of texel i at first[i * stride].
+// A channel in memory: the value of texel i is first[i * stride].
 template <class Value>
 struct BasicPlane {
   std::string channel;
@@ -38,28 +38,25 @@ using MutablePlane = BasicPlane<float>;
 
 ImageHeader read_image_header(const std::filesystem::path& path);
 
-// Fills `planes`, each with room for width × height values, from the channels of those names, all in one
-// pass. Throws InputError where a channel is not there or the size is another.
+// Fills `planes`, each with room for width × height values, from the channels of their names in one pass.
+// Throws InputError where a channel is missing or the image has another size.
 void read_planes(const std::filesystem::path& path, int width, int height,
                  std::span<const MutablePlane> planes);
 
-// One channel. `channel`: its name (any case where only one fits so) or its index from 0; empty: the only
-// one, or green
-// (`G`), or the luminance (`Y`). Throws InputError listing the channels there are where that does not choose
-// one.
+// Reads one channel. Throws InputError listing the channels where `channel` does not choose one.
+// channel: its name (any case where only one matches) or its index from 0; empty: the only one, else green
+//          (`G`), else the luminance (`Y`).
 Grid<float> read_height_map(const std::filesystem::path& path, const std::string& channel = "");
 
-// The first three channels, 0..1. Throws InputError naming both sizes where it is not width × height.
+// Reads the first three channels, 0..1. Throws InputError naming both sizes where it is not width × height.
 Grid<glm::vec3> read_normal_map(const std::filesystem::path& path, int width, int height);
 
-// Colours. `stored_as_integers`: of 8 or 16 bits, which for colours mostly means sRGB-encoded; nothing is
-// decoded here.
 struct ColorImage {
   Grid<glm::vec3> colors;
-  bool stored_as_integers = false;
+  bool stored_as_integers = false;  // mostly means sRGB-encoded; colors are not decoded
 };
 
-// The first three channels; an image of fewer is grey with the first.
+// Reads the first three channels; an image of fewer is grey with the first.
 ColorImage read_color_image(const std::filesystem::path& path);
 
 // Writes planes of width × height: `.exr` as 32-bit float (lossless), `.png` as 16-bit integers (one to four
@@ -71,12 +68,11 @@ ColorImage read_color_image(const std::filesystem::path& path);
 void write_image(const std::filesystem::path& path, int width, int height, std::span<const Plane> planes,
                  const Provenance& provenance);
 
-// One channel `Y`, as write_image.
+// Writes one channel `Y`, as write_image.
 void write_height_map(const std::filesystem::path& path, const Grid<float>& heights,
                       const Provenance& provenance);
 
-// An 8-bit sRGB PNG of values already encoded for display; below 0 and above 1 are clamped. Errors as
-// write_image.
+// Writes an 8-bit sRGB PNG of values already encoded for display, clamped to 0..1. Errors as write_image.
 void write_png8_rgb(const std::filesystem::path& path, const Grid<glm::vec3>& picture,
                     const Provenance& provenance);
 

@@ -21,19 +21,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Texels × channels read at a time: a few MB, some compression blocks for the threads.
+// Values (texels × channels) read at a time: a few MB, some compression blocks for the threads.
 constexpr int64_t kValuesPerBlock = int64_t{1} << 21;
 constexpr int kMaxRowsPerBlock = 64;
 
-// OpenImageIO's messages may hold several lines.
+// Joins the lines of a message of OpenImageIO.
 std::string one_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
 }
 
-[[noreturn]] void refuse(const fs::path& path, const std::string& complaint) {
-  throw InputError(fmt::format("{}: {}", path.string(), complaint));
+[[noreturn]] void refuse(const fs::path& path, const std::string& fault) {
+  throw InputError(fmt::format("{}: {}", path.string(), fault));
 }
 
 void check_regular_file(const fs::path& path) {
@@ -68,8 +68,8 @@ void check_windows(const fs::path& path, const OIIO::ImageSpec& spec) {
                        spec.full_x, spec.full_y));
 }
 
-// What OpenImageIO 2.4 reads wrongly without a word (tiffinput.cpp: unusual depths stay in a scratch buffer,
-// and only 8-bit values are inverted).
+// Refuses TIFFs that OpenImageIO 2.4 reads wrongly without an error (tiffinput.cpp: unusual depths stay in a
+// scratch buffer, and only 8-bit values are inverted).
 void check_tiff(const fs::path& path, const OIIO::ImageSpec& spec) {
   const int bits = spec.get_int_attribute("oiio:BitsPerSample");
   if (spec.format.is_floating_point() && bits != 16 && bits != 32)
@@ -85,7 +85,7 @@ class Reader {
  public:
   explicit Reader(const fs::path& path) : path_(path) {
     check_regular_file(path);
-    if (const std::string complaint = png_error(path); !complaint.empty()) refuse(path, complaint);
+    if (const std::string fault = png_error(path); !fault.empty()) refuse(path, fault);
     OIIO::attribute("threads", thread_count());
     OIIO::attribute("exr_threads", thread_count());
     OIIO::ImageSpec hints;
@@ -99,12 +99,12 @@ class Reader {
     if (format == "openexr") check_windows(path, spec_);
     if (format == "tiff") check_tiff(path, spec_);
     if (input_->seek_subimage(1, 0)) refuse(path, "holds several images, expected one");
-    input_->geterror();  // what seeking said
+    input_->geterror();  // clears the error of seeking
   }
 
   const OIIO::ImageSpec& spec() const { return spec_; }
 
-  [[noreturn]] void refuse_image(const std::string& complaint) const { refuse(path_, complaint); }
+  [[noreturn]] void refuse_image(const std::string& fault) const { refuse(path_, fault); }
 
   // Fills planes[k] from channel indices[k], all in one pass.
   void read(std::span<const MutablePlane> planes, std::span<const int> indices) {
@@ -173,7 +173,7 @@ class Reader {
   OIIO::ImageSpec spec_;
 };
 
-// Index of the one channel of that name; any case will do where that leaves one.
+// Returns the index of the channel of that name, in any case where only one matches.
 std::optional<int> find_channel(const std::vector<std::string>& channels, const std::string& name) {
   const auto exact = std::find(channels.begin(), channels.end(), name);
   if (exact != channels.end()) return static_cast<int>(exact - channels.begin());
@@ -190,7 +190,7 @@ std::optional<int> parse_index(const std::string& text, int count) {
   return index;
 }
 
-// See read_height_map.
+// Chooses as read_height_map says.
 std::optional<int> choose_channel(const std::vector<std::string>& channels, const std::string& wanted) {
   if (!wanted.empty()) {
     const std::optional<int> named = find_channel(channels, wanted);

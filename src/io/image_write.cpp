@@ -61,7 +61,7 @@ class FileProxy final : public OIIO::Filesystem::IOProxy {
   int64_t end_ = 0;
 };
 
-// Of an integer.
+// value: an integer.
 bool fits_int32(const Provenance& value) {
   if (value.is_number_unsigned()) return value.get<uint64_t>() <= uint64_t{INT32_MAX};
   return value.get<int64_t>() >= INT32_MIN && value.get<int64_t>() <= INT32_MAX;
@@ -87,7 +87,7 @@ void add_attributes(OIIO::ImageSpec& spec, const Provenance& provenance) {
   if (!provenance.empty()) spec.attribute("hemibake:provenance", provenance.dump());
 }
 
-// Calls refuse(place, value) for the first value for which usable(value) does not hold.
+// Calls refuse("channel C is VALUE at texel X,Y") for every value that is not usable.
 template <class Usable, class Refuse>
 void check_values(int width, int height, std::span<const Plane> planes, Usable usable, Refuse refuse) {
   const size_t texels = static_cast<size_t>(width) * static_cast<size_t>(height);
@@ -121,7 +121,7 @@ class Writer {
     if (!output_->open(path.string(), spec_)) fail();
   }
 
-  // Interleaves and writes block by block.
+  // Interleaves and writes block by block; commits the file.
   template <class Sample, class Convert>
   void write(std::span<const Plane> planes, Convert convert) {
     const int rows = rows_per_block();

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kProvenanceAttribute = "hemibake:provenance";
-// A map's facets are the most rows or columns a matrix can have.
+// Most rows or columns of a matrix: the facets of the largest map.
 constexpr uint64_t kMaxSide = 2 * kMaxTexels;
 
 // ---- Writing
@@ -135,8 +135,8 @@ void check_rows(const FormFactorMatrix& links, const std::string& name) {
 
 // ---- Reading
 
-// Sizes and values that do not make a matrix; becomes an InputError with the file's name in front.
-[[noreturn]] void refuse(const std::string& complaint) { throw Hdf5Error(complaint, 0); }
+// Reports a fault of the contents; becomes an InputError with the file's name in front.
+[[noreturn]] void refuse(const std::string& fault) { throw Hdf5Error(fault, 0); }
 
 Provenance read_provenance(hid_t file) {
   if (checked(H5Aexists(file, kProvenanceAttribute)) == 0) refuse("it has no hemibake attributes");
@@ -153,7 +153,7 @@ Provenance read_provenance(hid_t file) {
   return provenance;
 }
 
-// A one-dimensional data set read from its start, piece by piece.
+// Reads a one-dimensional data set from its start, piece by piece.
 class Extractor {
  public:
   Extractor(hid_t group, const std::string& name, hid_t stored_type, hid_t memory_type)
@@ -199,7 +199,7 @@ std::array<uint64_t, 2> read_shape(hid_t group, const std::string& name) {
   return shape;
 }
 
-// Row begins relative to the block, from absolute ends.
+// Sets the row begins, relative to the block, from absolute ends.
 void set_row_begins(BlockRows& rows, const std::vector<uint64_t>& ends, uint64_t position, uint64_t first_row,
                     const FormFactorMatrix& links, uint64_t count, const std::string& name) {
   rows.row_begin.assign(1, 0);
@@ -337,16 +337,15 @@ LinksFile read_links(const fs::path& path) {
   std::error_code missing;
   const fs::file_status status = fs::status(path, missing);
   if (!fs::is_regular_file(status))
-    throw InputError(fmt::format("{}: {}, expected a file of `hemibake bake --links`", path.string(),
+    throw InputError(fmt::format("{}: {}, expected a links file of `hemibake bake`", path.string(),
                                  fs::exists(status) ? "is not a regular file" : missing.message()));
   const Hdf5Silence silence;
   try {
     const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     return read_links_from(file.id());
   } catch (const Hdf5Error& error) {
-    throw InputError(
-        fmt::format("{}: is not a whole links file ({}), expected one of `hemibake bake --links`",
-                    path.string(), error.what()));
+    throw InputError(fmt::format("{}: is not a whole links file ({}), expected one of `hemibake bake`",
+                                 path.string(), error.what()));
   }
 }
 

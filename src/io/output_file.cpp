@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where the bytes go in the end: the file itself, or what a symbolic link points to.
+// Returns the file that gets replaced: the path itself, or the target of a symbolic link.
 fs::path resolve_target(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(path, error)) return path;
@@ -28,8 +28,8 @@ fs::path resolve_target(const fs::path& path) {
   return error ? path : target;
 }
 
-// An existing target is replaced only where plain writing to it would have been right: a rename over a device
-// or a read-only file succeeds, and destroys it.
+// Refuses a target that plain writing would refuse: a rename over a device or a read-only file succeeds, and
+// destroys it.
 void check_replaceable(const fs::path& path, const fs::path& target) {
   std::error_code error;
   const fs::file_status status = fs::status(target, error);
@@ -91,6 +91,12 @@ void OutputFile::commit() {
   if (closed != 0) fail_write(path_, errno);
   if (rename(temporary_path_.c_str(), target_.c_str()) != 0) fail_write(path_, errno);
   committed_ = true;
+}
+
+void write_text_file(const fs::path& path, std::string_view text) {
+  OutputFile file(path);
+  file.write(text);
+  file.commit();
 }
 
 void check_output_path(const fs::path& path, std::initializer_list<std::string_view> suffixes) {

@@ -1,5 +1,5 @@
-// A file that appears under its name only when it is whole: written under a temporary name in the same
-// folder, renamed by commit(). Whatever ends the writing early (an error, Ctrl-C) leaves nothing behind.
+// Files that appear under their name only when whole: written under a temporary name in the same folder,
+// renamed by commit(). Errors and Ctrl-C leave nothing behind.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@ namespace hemibake {
 
 class OutputFile {
  public:
-  // Creates the temporary file, empty. A symbolic link is followed: its target is what gets replaced. Throws
+  // Creates the temporary file, empty. Follows a symbolic link: replaces its target. Throws
   // InputError where the folder is missing or unwritable, or the path is there and is not a writable regular
   // file.
   explicit OutputFile(const std::filesystem::path& path);
@@ -20,7 +20,7 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  // In the same folder, with the same extension, of no other process.
+  // Same folder, same extension, of no other process.
   const std::filesystem::path& temporary_path() const { return temporary_path_; }
   // The temporary file, open for reading and writing at offset 0; closed by this object.
   int descriptor() const { return descriptor_; }
@@ -38,15 +38,19 @@ class OutputFile {
   bool committed_ = false;
 };
 
-// Fails before any work is done: throws InputError where `path` does not end in one of `suffixes` (".exr", in
-// any case; none given: any) or where an OutputFile of that path could not be created. Leaves nothing behind.
+// Writes `text` as the whole file. Throws InputError as OutputFile does.
+void write_text_file(const std::filesystem::path& path, std::string_view text);
+
+// Checks before any work is done that an OutputFile of that path can be created; leaves nothing behind.
+// Throws InputError where it cannot, or where `path` does not end in one of `suffixes`.
+// suffixes: as ".exr", matched in any case; none given: any.
 void check_output_path(const std::filesystem::path& path,
                        std::initializer_list<std::string_view> suffixes = {});
 
 // Throws InputError "FILE: could not write: REASON" for an errno value.
 [[noreturn]] void fail_write(const std::filesystem::path& path, int error_number);
 
-// The extension in lower case, with its dot: ".exr".
+// Returns the extension in lower case, with its dot: ".exr".
 std::string lower_case_extension(const std::filesystem::path& path);
 
 }  // namespace hemibake

@@ -36,7 +36,7 @@ uint32_t add_to_crc(uint32_t crc, const char* bytes, size_t count) {
   return static_cast<uint32_t>(crc32(crc, reinterpret_cast<const Bytef*>(bytes), static_cast<uInt>(count)));
 }
 
-std::string complaint_about_header(const char* data) {
+std::string header_error(const char* data) {
   const uint64_t width = big_endian(data), height = big_endian(data + 4);
   if (width * height <= kMaxTexels) return "";
   return fmt::format("claims {} x {} texels, expected at most {}", width, height, kMaxTexels);
@@ -66,7 +66,7 @@ std::string png_error(const std::filesystem::path& path) {
     if (!read_exactly(file, stored_crc, sizeof(stored_crc))) return "is cut short, expected a whole PNG";
     if (big_endian(stored_crc) != crc) return "is damaged (a CRC does not fit), expected a whole PNG";
     if (type == "IHDR" && big_endian(head) == 13)
-      if (std::string complaint = complaint_about_header(block.data()); !complaint.empty()) return complaint;
+      if (std::string fault = header_error(block.data()); !fault.empty()) return fault;
     if (type == "IEND") return "";
   }
 }

@@ -1,5 +1,5 @@
-// Whether a PNG is whole, found without decoding it: libpng takes a file cut short after its last texel for
-// whole, and prints to standard error what it finds wrong.
+// Checks a PNG without decoding it: libpng accepts a file cut short after its last texel, and prints its
+// errors to standard error.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace hemibake {
 
-// What is wrong with the chunks of a PNG: one cut short, one whose CRC-32 does not fit, no end chunk, or a
-// header that claims more than kMaxTexels. Empty where nothing is, and for a file that is no PNG at all.
+// Returns the fault of a PNG's chunks; empty where there is none, and for a file that is no PNG at all.
+// Faults: a chunk cut short, a wrong CRC-32, no end chunk, a header that claims more than kMaxTexels.
 std::string png_error(const std::filesystem::path& path);
 
 }  // namespace hemibake

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <memory>
 
@@ -19,34 +18,6 @@ namespace hemibake {
 namespace {
 
 constexpr size_t kHashBlockBytes = size_t{1} << 20;
-
-bool starts_with_any(std::string_view argument, std::initializer_list<std::string_view> prefixes) {
-  for (const std::string_view prefix : prefixes)
-    if (argument.starts_with(prefix)) return true;
-  return false;
-}
-
-// How many arguments from `argument` on change no byte of a result.
-int arguments_left_out(std::string_view argument) {
-  if (argument == "--threads" || argument == "--output" || argument == "-o") return 2;
-  if (argument == "--json" || starts_with_any(argument, {"--threads=", "--output="})) return 1;
-  return argument.starts_with("-o") ? 1 : 0;
-}
-
-std::string shell_quoted(const std::string& argument) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
-  if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) return argument;
-  std::string quoted = "'";
-  for (const char c : argument) {
-    if (c == '\'') {
-      quoted += "'\\''";
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted.append("'");
-}
 
 }  // namespace
 
@@ -71,25 +42,6 @@ void check_provenance(const Provenance& provenance) {
       throw std::logic_error(
           fmt::format("provenance '{}' is {}, expected a finite scalar", name, value.dump()));
   }
-}
-
-std::vector<std::string> process_arguments() {
-  std::ifstream file("/proc/self/cmdline", std::ios::binary);
-  std::vector<std::string> arguments;
-  for (std::string argument; std::getline(file, argument, '\0');) arguments.push_back(argument);
-  return arguments;
-}
-
-std::string command_line(const std::vector<std::string>& arguments) {
-  std::string line = "hemibake";
-  for (size_t i = 1; i < arguments.size(); ++i) {
-    if (const int left_out = arguments_left_out(arguments[i])) {
-      i += static_cast<size_t>(left_out) - 1;
-    } else {
-      line.append(" ").append(shell_quoted(arguments[i]));
-    }
-  }
-  return line;
 }
 
 std::string sha256_of_file(const std::filesystem::path& path) {

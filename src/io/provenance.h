@@ -1,11 +1,10 @@
-// How a result was made: what every file written carries with it.
+// How a result was made: an object that every file written carries.
 #pragma once
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace hemibake {
 
@@ -14,30 +13,21 @@ namespace hemibake {
 // run.
 using Provenance = nlohmann::ordered_json;
 
-// `version`, `command` (a line from command_line()), `input` (the file's name without its folder) and
-// `input_sha256`. Throws InputError where the input cannot be read.
+// Returns `version`, `command`, `input` (the file's name without its folder) and `input_sha256`. Throws
+// InputError where the input cannot be read. command: one line that makes the result again.
 Provenance make_provenance(std::string_view command, const std::filesystem::path& input);
 
-// `version` and `command`, for what is made from no input.
+// Returns `version` and `command`, for results made from no input.
 Provenance make_provenance(std::string_view command);
 
-// Throws std::logic_error naming the entry where `provenance` is not as described above, or a name is empty
-// or "provenance" (which is what files call the whole).
+// Throws std::logic_error naming an entry that is not as described above, or whose name is empty or
+// "provenance", the name that files give the whole.
 void check_provenance(const Provenance& provenance);
 
-// The arguments this process was started with, the program's name first.
-std::vector<std::string> process_arguments();
-
-// One line that makes the same result again in a POSIX shell: "hemibake bake 'my map.png' --rays 64". Left
-// out is what changes no byte of a result: --threads N, --json, -o / --output FILE, and the folder the
-// program lies in.
-std::string command_line(const std::vector<std::string>& arguments);
-
-// 64 hexadecimal digits. Throws InputError where the file cannot be read.
+// Returns 64 hexadecimal digits. Throws InputError where the file cannot be read.
 std::string sha256_of_file(const std::filesystem::path& path);
 
-// `text` with every byte that is not UTF-8 replaced by U+FFFD (file names may hold any byte; JSON and HDF5
-// may not).
+// Replaces every byte that is not UTF-8 by U+FFFD: file names may hold any byte, JSON and HDF5 may not.
 std::string valid_utf8(std::string_view text);
 
 }  // namespace hemibake

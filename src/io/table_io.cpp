@@ -4,15 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <iterator>
-#include <sstream>
 
 #include "core/error.h"
+#include "io/input_file.h"
 #include "io/output_file.h"
 
 namespace hemibake {
@@ -22,18 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-std::string read_text(const fs::path& path) {
-  if (fs::is_directory(path))
-    throw InputError(fmt::format("{}: is a folder, expected a file", path.string()));
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (file && file.peek() != std::ifstream::traits_type::eof()) text << file.rdbuf();
-  if (!file.is_open() || file.bad() || text.bad())
-    throw InputError(fmt::format("{}: could not read: {}", path.string(), std::strerror(errno)));
-  return std::move(text).str();
-}
-
-// Pieces between separators: one more than there are separators.
+// Splits into one piece more than there are separators.
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> pieces;
   for (;;) {
@@ -44,17 +30,18 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
+// Splits at line ends; drops a byte-order mark and the empty piece after the last line end.
 std::vector<std::string_view> split_lines(std::string_view text) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::vector<std::string_view> lines = split(text, '\n');
-  if (lines.back().empty()) lines.pop_back();  // after the last line end
+  if (lines.back().empty()) lines.pop_back();
   for (std::string_view& line : lines)
     if (line.ends_with('\r')) line.remove_suffix(1);
   return lines;
 }
 
-// What is wrong with the column names; empty where nothing is.
-std::string complaint_about_columns(const std::vector<std::string>& columns) {
+// Returns the fault of the column names; empty where there is none.
+std::string column_error(const std::vector<std::string>& columns) {
   for (size_t i = 0; i < columns.size(); ++i) {
     if (columns[i].empty()) return fmt::format("column {} has no name", i + 1);
     if (std::find(columns.begin(), columns.begin() + static_cast<ptrdiff_t>(i), columns[i]) !=
@@ -64,6 +51,7 @@ std::string complaint_about_columns(const std::vector<std::string>& columns) {
   return "";
 }
 
+// Parses a finite number, or nothing from an empty cell. place: for the error, "FILE:LINE: …".
 std::optional<double> parse_cell(std::string_view cell, const std::string& place) {
   if (cell.empty()) return std::nullopt;
   double value = 0;
@@ -75,6 +63,7 @@ std::optional<double> parse_cell(std::string_view cell, const std::string& place
   return value;
 }
 
+// Throws std::logic_error with the place of a number that is not finite.
 void check_finite(const nlohmann::ordered_json& json, const std::string& place) {
   if (json.is_number_float() && !std::isfinite(json.get<double>()))
     throw std::logic_error(
@@ -86,14 +75,14 @@ void check_finite(const nlohmann::ordered_json& json, const std::string& place) 
 }  // namespace
 
 Table read_csv(const fs::path& path) {
-  const std::string text = read_text(path);
+  const std::string text = read_whole_file(path);
   const std::vector<std::string_view> lines = split_lines(text);
   if (lines.empty())
     throw InputError(fmt::format("{}: is empty, expected a line of column names", path.string()));
   Table table;
   for (const std::string_view name : split(lines[0], ',')) table.columns.emplace_back(name);
-  if (const std::string complaint = complaint_about_columns(table.columns); !complaint.empty())
-    throw InputError(fmt::format("{}:1: {}, expected a name of its own for each", path.string(), complaint));
+  if (const std::string error = column_error(table.columns); !error.empty())
+    throw InputError(fmt::format("{}:1: {}, expected a name of its own for each", path.string(), error));
   for (size_t i = 1; i < lines.size(); ++i) {
     const std::vector<std::string_view> cells = split(lines[i], ',');
     if (cells.size() != table.columns.size())
@@ -109,8 +98,8 @@ Table read_csv(const fs::path& path) {
 
 void write_csv(const fs::path& path, const Table& table) {
   if (table.columns.empty()) throw std::logic_error("a table to write has no columns");
-  if (const std::string complaint = complaint_about_columns(table.columns); !complaint.empty())
-    throw std::logic_error("a table to write: " + complaint);
+  if (const std::string error = column_error(table.columns); !error.empty())
+    throw std::logic_error("a table to write: " + error);
   std::string text = fmt::format("{}\n", fmt::join(table.columns, ","));
   if (text.find_first_of("\n\r\"") != text.size() - 1 ||
       std::count(text.begin(), text.end(), ',') + 1 != static_cast<ptrdiff_t>(table.columns.size()))
@@ -127,9 +116,7 @@ void write_csv(const fs::path& path, const Table& table) {
     }
     text += '\n';
   }
-  OutputFile file(path);
-  file.write(text);
-  file.commit();
+  write_text_file(path, text);
 }
 
 std::optional<size_t> find_column(const Table& table, std::string_view name) {
@@ -139,7 +126,7 @@ std::optional<size_t> find_column(const Table& table, std::string_view name) {
 }
 
 std::vector<double> read_numbers(const fs::path& path, size_t count) {
-  const std::string text = read_text(path);
+  const std::string text = read_whole_file(path);
   const std::vector<std::string_view> lines = split_lines(text);
   std::vector<double> numbers;
   for (size_t i = 0; i < lines.size(); ++i) {
@@ -156,7 +143,7 @@ std::vector<double> read_numbers(const fs::path& path, size_t count) {
 }
 
 nlohmann::ordered_json read_json(const fs::path& path) {
-  const std::string text = read_text(path);
+  const std::string text = read_whole_file(path);
   try {
     return nlohmann::ordered_json::parse(text);
   } catch (const nlohmann::ordered_json::exception& error) {
@@ -168,9 +155,7 @@ nlohmann::ordered_json read_json(const fs::path& path) {
 
 void write_json(const fs::path& path, const nlohmann::ordered_json& json) {
   check_finite(json, path.filename().string());
-  OutputFile file(path);
-  file.write(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-  file.commit();
+  write_text_file(path, json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace hemibake

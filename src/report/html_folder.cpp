@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <sstream>
 
 #include "core/error.h"
 #include "io/curves_file.h"
+#include "io/input_file.h"
 #include "io/output_file.h"
 #include "io/provenance.h"
 #include "io/table_io.h"
@@ -49,14 +48,6 @@ void read_sweep(const fs::path& folder, std::vector<SweepCurves>& sweep) {
 // The page of a 512 x 512 bake with 20 bounces has 8 MiB and is to stay below 12; as text a third is added.
 constexpr size_t kPictureBytes = 3000000;
 
-std::string read_bytes(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  if (file && file.peek() != std::ifstream::traits_type::eof()) bytes << file.rdbuf();
-  if (!file) throw InputError(fmt::format("{}: could not be read, expected a picture", path.string()));
-  return bytes.str();
-}
-
 // Figures, which have no EXR of their own and show several pictures side by side, come first.
 void read_pictures(const fs::path& folder, std::vector<ReportPicture>& pictures) {
   const nlohmann::ordered_json record = read_if_there(folder / "render.json", "pictures");
@@ -71,7 +62,7 @@ void read_pictures(const fs::path& folder, std::vector<ReportPicture>& pictures)
         // A name, wherever the list came from: never a way out of the folder.
         const fs::path file = folder / fs::path(name.get<std::string>()).filename();
         if (lower_case_extension(file) != ".png" || !fs::is_regular_file(file)) continue;
-        std::string png = fs::file_size(file) <= room ? read_bytes(file) : std::string();
+        std::string png = fs::file_size(file) <= room ? read_whole_file(file) : std::string();
         room -= png.size();
         pictures.push_back({valid_utf8(file.stem().string()), std::move(png)});
       }

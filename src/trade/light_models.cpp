@@ -19,10 +19,10 @@ constexpr std::array<LightModel, 6> kLightModels{{
     {"jimenez", "the cubic of Jimenez et al. 2016"},
 }};
 
-// E/π of an AO at an albedo.
+// Returns E/π of an AO at an albedo.
 using Evaluate = std::function<double(double ao, double albedo)>;
 
-// Empty where the model's constants are not there.
+// Returns the model's function; empty where its constants are absent.
 Evaluate evaluator(const std::string& model, const FittedModels& fitted) {
   if (model == "plain") return [](double ao, double) { return ao; };
   if (model == "f0") return [m = GuardedModel{}](double ao, double) { return m.direct(ao); };
@@ -37,6 +37,7 @@ Evaluate evaluator(const std::string& model, const FittedModels& fitted) {
   return {};
 }
 
+// Fits the model at bin centres; empty where the curves do not allow it.
 std::vector<NamedFit> fits_or_none(const char* model, const Curves& curves) {
   try {
     return fit_model(model, curves, Abscissa::center, Weights::none);
@@ -60,24 +61,6 @@ FittedModels fit_light_models(const Curves& curves) {
     fitted.bounded =
         BoundedModel{parameter_value(bounded[0].fit, "k0"), parameter_value(bounded[0].fit, "k1"),
                      parameter_value(bounded[1].fit, "q"), parameter_value(bounded[1].fit, "d")};
-  return fitted;
-}
-
-nlohmann::ordered_json json_from_fitted(const FittedModels& fitted) {
-  nlohmann::ordered_json json = {{"eq12-refitted", nullptr}, {"bounded", nullptr}};
-  if (const auto& m = fitted.eq12)
-    json["eq12-refitted"] = {{"k", m->k}, {"e", m->e}, {"A", m->a}, {"B", m->b}};
-  if (const auto& m = fitted.bounded)
-    json["bounded"] = {{"k0", m->k0}, {"k1", m->k1}, {"q", m->q}, {"d", m->d}};
-  return json;
-}
-
-FittedModels fitted_from_json(const nlohmann::ordered_json& json) {
-  FittedModels fitted;
-  if (const auto& m = json.at("eq12-refitted"); !m.is_null())
-    fitted.eq12 = PublishedModel{m.at("k"), m.at("e"), m.at("A"), m.at("B")};
-  if (const auto& m = json.at("bounded"); !m.is_null())
-    fitted.bounded = BoundedModel{m.at("k0"), m.at("k1"), m.at("q"), m.at("d")};
   return fitted;
 }
 

@@ -4,24 +4,20 @@
 #include <cmath>
 
 #include "bake/plan.h"
-#include "core/constants.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
-#include "reference/comparison.h"
 #include "tracers/slice/slice.h"
 #include "trade/errors.h"
 #include "trade/resample.h"
-#include "transport/bounces.h"
-#include "transport/trace_surface.h"
 
 namespace hemibake {
 namespace {
 
 constexpr uint64_t kFirstSeed = 1000003;  // of no run
-constexpr int kStartFactor = 4;           // times the azimuths of the highest rung
+constexpr int kStartFactor = 4;           // times the azimuths of the highest level
 constexpr int kLargestFactor = 16;
 constexpr int kMostPairs = 4;                        // of seeds
-constexpr double kAimedShare = kReferenceShare / 2;  // some run may be better than the slices' highest rung
+constexpr double kAimedShare = kReferenceShare / 2;  // some run may be better than the slices' highest level
 constexpr size_t kFittedBounces = 21;                // E_0 … E_20, what a bake stores
 
 // Up to 1024 turned azimuths, all slices lie on one grid of directions whatever their seed, so two seeds err
@@ -34,36 +30,21 @@ SliceOptions seeded_slices(int azimuths, uint64_t seed) {
   return options;
 }
 
-RunPlanes see_sky(const Surface& surface, int azimuths, uint64_t seed) {
-  const auto tracer = make_slice_tracer(surface, seeded_slices(azimuths, seed));
-  LightTransport seen = trace_surface(*tracer, false);
-  RunPlanes planes;
-  planes.uniform = std::move(seen.visible_fraction);
-  planes.cosine = std::move(seen.direct_over_pi);
-  return planes;
+// Bakes with slices; keeps E_0 … E_20 of the bounces.
+TracedPlanes trace_slices(const Surface& surface, int azimuths, int bounces, uint64_t seed) {
+  TracedPlanes traced = trace_planes(*make_slice_tracer(surface, seeded_slices(azimuths, seed)), bounces);
+  traced.irradiance.resize(std::min(traced.irradiance.size(), kFittedBounces));
+  return traced;
 }
 
-struct Lit {
-  RunPlanes planes;
-  Bake bake;  // E_0 … E_20, for fits and the referee
-};
-
-Lit light_up(const Surface& surface, int azimuths, int bounces, uint64_t seed) {
-  const auto tracer = make_slice_tracer(surface, seeded_slices(azimuths, seed));
-  LightTransport seen = trace_surface(*tracer, true);
-  BounceOptions options;
-  options.bounces = bounces;
-  std::vector<Grid<float>> irradiance = bounce_light(seen, options).irradiance;
-  Lit lit;
-  add_bounces(irradiance, lit.planes);
-  irradiance.resize(std::min(irradiance.size(), kFittedBounces));
-  lit.bake.width = surface.width();
-  lit.bake.height = surface.height();
-  lit.bake.irradiance = std::move(irradiance);
-  lit.bake.visible_fraction = std::move(seen.visible_fraction);
-  lit.planes.uniform = lit.bake.visible_fraction;
-  lit.planes.cosine = std::move(seen.direct_over_pi);
-  return lit;
+// Makes the bake that models are fitted to and the referee checks.
+Bake bake_of(const Surface& surface, TracedPlanes&& traced) {
+  Bake bake;
+  bake.width = surface.width();
+  bake.height = surface.height();
+  bake.irradiance = std::move(traced.irradiance);
+  bake.visible_fraction = std::move(traced.planes.uniform);
+  return bake;
 }
 
 // Two groups of seeds, summed plane by plane.
@@ -79,7 +60,7 @@ struct Groups {
     add(b, sums[1]);
   }
   static void add(const RunPlanes& planes, std::vector<std::vector<double>>& sum) {
-    sum.resize(named_planes().size());
+    sum.resize(kPlaneCount);
     for (size_t p = 0; p < sum.size(); ++p) {
       const Grid<float>& plane = named_planes()[p].of(planes);
       sum[p].resize(plane.size());
@@ -88,14 +69,14 @@ struct Groups {
   }
   RunPlanes mean() const {
     RunPlanes planes = shape;
-    for (size_t p = 0; p < named_planes().size(); ++p) {
+    for (size_t p = 0; p < kPlaneCount; ++p) {
       Grid<float>& plane = named_planes()[p].of(planes);
       for (size_t i = 0; i < plane.size(); ++i)
         plane[i] = static_cast<float>((sums[0][p][i] + sums[1][p][i]) / (2 * pairs));
     }
     return planes;
   }
-  // Of the mean: rms(A − B)/2.
+  // Returns the standard error of the mean: rms(A − B)/2.
   double error(size_t p) const {
     const size_t count = sums[0][p].size();
     if (count == 0) return 0;
@@ -108,27 +89,23 @@ struct Groups {
   }
 };
 
-// Per plane: the error of the reference, and that of the best run without it.
+// Errors of the reference and, without it, of the best run; 0 where the planes are empty.
 struct Precision {
-  nlohmann::ordered_json error, best;
+  PlaneValues error{}, best{};
   bool reached = true;
 };
 
 Precision precision_of(const Groups& groups, const RunPlanes& best_run) {
   const RunPlanes mean = groups.mean();
   Precision precision;
-  for (size_t p = 0; p < named_planes().size(); ++p) {
+  for (size_t p = 0; p < kPlaneCount; ++p) {
     const NamedPlane& named = named_planes()[p];
     const Grid<float>& plane = named.of(mean);
     if (plane.empty()) continue;
-    const double own = groups.error(p);
+    const double own = precision.error[p] = groups.error(p);
     const double seen = error_of(named.of(best_run).values, plane.values, {}).rmse;
-    const double best = std::sqrt(std::max(0.0, seen * seen - own * own));
-    precision.error[named.name] = own;
-    precision.best[named.name] = best;
-    // Where both are rounding there is nothing left to tell apart.
-    constexpr double kRounding = 1e-6;
-    if (own > std::max(kAimedShare * best, kRounding)) precision.reached = false;
+    precision.best[p] = own_error(seen, own);
+    if (own > std::max(kAimedShare * precision.best[p], kRoundingError)) precision.reached = false;
   }
   return precision;
 }
@@ -138,53 +115,43 @@ size_t link_bytes(const Surface& surface, int azimuths) {
   return plan_bake(surface, *tracer, {}).link_bytes;
 }
 
-nlohmann::ordered_json ask_referee(const Surface& surface, const Bake& bake, bool quick) {
+std::vector<RefereeRow> check_means(const Surface& surface, const Bake& bake, bool quick) {
   RefereeCheckOptions options;
   options.texels = std::min<size_t>(quick ? 100 : 1000, surface.texel_count());
   options.paths = quick ? 128 : 1024;
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  if (options.texels < 2) return rows;
-  for (const RefereeRow& row :
-       check_against_referee(surface, {bake.visible_fraction, bake.irradiance}, options).means)
-    rows.push_back({{"quantity", row.quantity},
-                    {"reference", row.bake_mean},
-                    {"referee", row.referee_mean},
-                    {"bias", row.bias},
-                    {"half_width", row.half_width},
-                    {"texels", row.texels}});
-  return rows;
+  if (options.texels < 2) return {};
+  return check_against_referee(surface, {bake.visible_fraction, bake.irradiance}, options).means;
 }
 
-// α and E₀/π: azimuths are doubled until they are enough.
-Groups converge_sky(const Surface& surface, int top, nlohmann::ordered_json& facts) {
-  const RunPlanes best_run = see_sky(surface, top, 0);
+// Converges α and E₀/π: doubles the azimuths until they are enough.
+RunPlanes converge_sky(const Surface& surface, int top, ReferenceFacts& facts) {
+  const RunPlanes best_run = trace_slices(surface, top, 0, 0).planes;
   for (int factor = kStartFactor;; factor *= 2) {
     Groups groups;
-    groups.add_pair(see_sky(surface, factor * top, kFirstSeed),
-                    see_sky(surface, factor * top, kFirstSeed + 1));
+    groups.add_pair(trace_slices(surface, factor * top, 0, kFirstSeed).planes,
+                    trace_slices(surface, factor * top, 0, kFirstSeed + 1).planes);
     const Precision precision = precision_of(groups, best_run);
     if (!precision.reached && factor < kLargestFactor) continue;
-    facts["azimuths_ao"] = factor * top;
-    facts["error"] = precision.error;
-    facts["best_run_error"] = precision.best;
-    return groups;
+    facts.azimuths_ao = factor * top;
+    facts.error = precision.error;
+    facts.best_run_error = precision.best;
+    return groups.mean();
   }
 }
 
-// The bounces: azimuths are doubled while their links fit, then seeds are added.
-Groups converge_light(const Surface& surface, const ReferenceOptions& options, Bake& bake,
-                      nlohmann::ordered_json& facts) {
+// Converges the bounces: doubles the azimuths while their links fit, then adds seeds.
+RunPlanes converge_light(const Surface& surface, const ReferenceOptions& options, Bake& bake,
+                         ReferenceFacts& facts) {
   const int top = top_light_azimuths(options.effort);
-  const RunPlanes best_run = light_up(surface, top, kTradeBounces, 0).planes;
+  const RunPlanes best_run = trace_slices(surface, top, kTradeBounces, 0).planes;
   int factor = kStartFactor;
   while (factor > 1 && link_bytes(surface, factor * top) > options.memory_bytes) factor /= 2;
   Groups groups;
   while (true) {
     const uint64_t seed = kFirstSeed + 2 * static_cast<uint64_t>(groups.pairs);
-    Lit a = light_up(surface, factor * top, kReferenceBounces, seed);
-    const Lit b = light_up(surface, factor * top, kReferenceBounces, seed + 1);
-    groups.add_pair(a.planes, b.planes);
-    bake = std::move(a.bake);
+    TracedPlanes a = trace_slices(surface, factor * top, kReferenceBounces, seed);
+    groups.add_pair(a.planes, trace_slices(surface, factor * top, kReferenceBounces, seed + 1).planes);
+    bake = bake_of(surface, std::move(a));
     const Precision precision = precision_of(groups, best_run);
     const bool may_double = factor < kLargestFactor && groups.pairs == 1 &&
                             link_bytes(surface, 2 * factor * top) <= options.memory_bytes;
@@ -194,43 +161,45 @@ Groups converge_light(const Surface& surface, const ReferenceOptions& options, B
       continue;
     }
     if (!precision.reached && groups.pairs < kMostPairs) continue;
-    facts["azimuths_light"] = factor * top;
-    facts["seeds_light"] = 2 * groups.pairs;
-    for (const NamedPlane& named : named_planes()) {
-      if (facts["error"].contains(named.name)) continue;  // α and E₀/π have better ones
-      facts["error"][named.name] = precision.error[named.name];
-      facts["best_run_error"][named.name] = precision.best[named.name];
+    facts.azimuths_light = factor * top;
+    facts.seeds_light = 2 * groups.pairs;
+    for (size_t p = kFirstPlane; p < kPlaneCount; ++p) {  // α and E₀/π have better ones
+      facts.error[p] = precision.error[p];
+      facts.best_run_error[p] = precision.best[p];
     }
-    return groups;
+    return groups.mean();
   }
 }
 
 }  // namespace
 
+double own_error(double rmse, double reference_error) {
+  return std::sqrt(std::max(0.0, rmse * rmse - reference_error * reference_error));
+}
+
 Reference make_reference(const Surface& surface, const ReferenceOptions& options) {
   const double start = process_cpu_seconds();
   Reference reference;
-  nlohmann::ordered_json& facts = reference.facts;
-  facts["width"] = surface.width();
-  facts["height"] = surface.height();
-  facts["can_halve"] = can_halve(surface);
-  facts["height_range_m"] = height_range_m(surface);
-  facts["texel_size_m"] = surface.texel_size_m;
-  facts["bounces"] = kReferenceBounces;
+  ReferenceFacts& facts = reference.facts;
+  facts.width = surface.width();
+  facts.height = surface.height();
+  facts.can_halve = can_halve(surface);
+  facts.height_range_m = height_range_m(surface);
+  facts.texel_size_m = surface.texel_size_m;
 
-  const RunPlanes sky = converge_sky(surface, top_ao_azimuths(options.effort), facts).mean();
+  RunPlanes sky = converge_sky(surface, top_ao_azimuths(options.effort), facts);
   Bake bake;
-  reference.planes = converge_light(surface, options, bake, facts).mean();
-  reference.planes.uniform = sky.uniform;
-  reference.planes.cosine = sky.cosine;
-  for (const NamedPlane& named : named_planes())
-    facts["mean"][named.name] = mean(std::span<const float>(named.of(reference.planes).values));
-  facts["referee"] = ask_referee(surface, bake, options.effort == Effort::kQuick);
-
+  reference.planes = converge_light(surface, options, bake, facts);
+  facts.referee = check_means(surface, bake, options.effort == Effort::kQuick);
   bake.visible_fraction = sky.uniform;
-  reference.fitted = fit_light_models(make_curves(bake, 100));
-  facts["models"] = json_from_fitted(reference.fitted);
-  facts["cpu_seconds"] = process_cpu_seconds() - start;
+  facts.models = fit_light_models(make_curves(bake, 100));
+
+  reference.planes.uniform = std::move(sky.uniform);
+  reference.planes.cosine = std::move(sky.cosine);
+  for (size_t p = 0; p < kPlaneCount; ++p)
+    facts.mean[p] = mean(std::span<const float>(named_planes()[p].of(reference.planes).values));
+  facts.cpu_seconds = process_cpu_seconds() - start;
+  facts.models_on_true_ao = light_model_errors(reference.planes, facts.models, reference.planes);
   return reference;
 }
 

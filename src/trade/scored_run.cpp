@@ -6,21 +6,12 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "trade/child_process.h"
-#include "trade/errors.h"
 
 namespace hemibake {
 namespace {
 
 constexpr double kShortSeconds = 0.1;
 constexpr int kMostRepeats = 3;
-
-nlohmann::ordered_json json_of(const ErrorStatistics& error) {
-  return {{"rmse", error.rmse}, {"bias", error.bias}, {"max", error.largest}, {"p99", error.p99}};
-}
-
-nlohmann::ordered_json json_of(const CurveError& error) {
-  return {{"bias", error.bias}, {"rms", error.rms}, {"max", error.largest}, {"bins", error.bins}};
-}
 
 double known_share(const RunPlanes& planes) {
   if (planes.known.empty()) return 1;
@@ -52,60 +43,42 @@ MeasuredRun measure_run(const TradeRun& run, const Surface& surface, const Grid<
   return best;
 }
 
-nlohmann::ordered_json errors_of(const RunPlanes& planes, const RunPlanes& truth) {
-  nlohmann::ordered_json errors = nlohmann::ordered_json::object();
-  for (const NamedPlane& named : named_planes()) {
+PlaneErrors errors_of(const RunPlanes& planes, const RunPlanes& truth) {
+  PlaneErrors errors;
+  for (size_t p = 0; p < kPlaneCount; ++p) {
+    const NamedPlane& named = named_planes()[p];
     const Grid<float>& plane = named.of(planes);
-    if (plane.empty()) continue;
-    errors[named.name] = json_of(error_of(plane.values, named.of(truth).values, planes.known.values));
+    if (!plane.empty()) errors[p] = error_of(plane.values, named.of(truth).values, planes.known.values);
   }
   return errors;
 }
 
-nlohmann::ordered_json curve_errors_of(const RunPlanes& planes, const RunPlanes& truth) {
-  nlohmann::ordered_json errors = nlohmann::ordered_json::object();
+std::optional<CurveErrors> curve_errors_of(const RunPlanes& planes, const RunPlanes& truth) {
   const bool uniform = !planes.uniform.empty();
   const Grid<float>& ao = uniform ? planes.uniform : planes.cosine;
-  if (ao.empty()) return errors;
+  if (ao.empty()) return std::nullopt;
   const Grid<float>& true_ao = uniform ? truth.uniform : truth.cosine;
   const auto error_with = [&](const Grid<float>& own, const Grid<float>& values) {
-    return json_of(curve_error(ao.values, own.empty() ? values.values : own.values, true_ao.values,
-                               values.values, planes.known.values));
+    return curve_error(ao.values, own.empty() ? values.values : own.values, true_ao.values, values.values,
+                       planes.known.values);
   };
   // Where the run's only AO is E₀/π itself, its E₀ against it is a straight line: the truth takes its place.
-  errors["E0"] = error_with(uniform ? planes.cosine : Grid<float>{}, truth.cosine);
-  errors["E1"] = error_with(planes.first_bounce, truth.first_bounce);
-  return errors;
+  return CurveErrors{error_with(uniform ? planes.cosine : Grid<float>{}, truth.cosine),
+                     error_with(planes.first_bounce, truth.first_bounce)};
 }
 
-nlohmann::ordered_json model_errors_of(const RunPlanes& planes, const FittedModels& fitted,
-                                       const RunPlanes& truth) {
-  nlohmann::ordered_json errors = nlohmann::ordered_json::object();
-  for (const LightModelErrors& model : light_model_errors(planes, fitted, truth))
-    for (const NamedPlane& named : named_planes())
-      if (named.single == nullptr) errors[model.model][named.name] = json_of(model.error[named.albedo]);
-  return errors;
-}
-
-nlohmann::ordered_json score_run(const TradeRun& run, const MeasuredRun& measured, const FittedModels& fitted,
-                                 const RunPlanes& truth) {
+ScoredRun score_run(const TradeRun& run, const MeasuredRun& measured, const FittedModels& fitted,
+                    const RunPlanes& truth) {
   const RunPlanes& planes = measured.planes;
-  return {{"id", run.id()},
-          {"method", run.method},
-          {"settings", run.settings},
-          {"series", run.series},
-          {"abscissa", run.abscissa_name},
-          {"abscissa_value", run.abscissa},
-          {"representative", run.representative},
-          {"cpu_seconds", measured.cost.cpu_seconds},
-          {"wall_seconds", measured.cost.wall_seconds},
-          {"repeats", measured.cost.repeats},
-          {"memory_bytes", measured.cost.memory_bytes},
-          {"work", planes.work},
-          {"known", known_share(planes)},
-          {"error", errors_of(planes, truth)},
-          {"curve", curve_errors_of(planes, truth)},
-          {"models", model_errors_of(planes, fitted, truth)}};
+  ScoredRun scored;
+  static_cast<RunDescription&>(scored) = run;
+  scored.cost = measured.cost;
+  scored.work = planes.work;
+  scored.known = known_share(planes);
+  scored.error = errors_of(planes, truth);
+  scored.curve = curve_errors_of(planes, truth);
+  scored.models = light_model_errors(planes, fitted, truth);
+  return scored;
 }
 
 }  // namespace hemibake

@@ -1,20 +1,22 @@
 // One run, measured and compared with the truth.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <array>
+#include <optional>
+#include <vector>
 
+#include "trade/errors.h"
 #include "trade/light_models.h"
 #include "trade/trade_run.h"
 
 namespace hemibake {
 
-// What a run costs.
 struct RunCost {
   double cpu_seconds = 0;   // of this process on all threads, from the surface to the planes
-  double wall_seconds = 0;  // the same; other work on the machine shows
+  double wall_seconds = 0;  // likewise; other work on the machine shows
   int repeats = 1;          // runs below a tenth of a second are repeated, and the fastest counts
   // Largest resident memory while it ran (first repeat) over that before: its own structures and planes, not
-  // the program, the map or the truth. A process of its own, see trade/child_process.h.
+  // the program, the map or the truth. Needs a process of its own (trade/child_process.h).
   size_t memory_bytes = 0;
 };
 
@@ -23,21 +25,34 @@ struct MeasuredRun {
   RunCost cost;
 };
 
+// Performs the run and measures it. direct: the true E₀, 0..π.
 MeasuredRun measure_run(const TradeRun& run, const Surface& surface, const Grid<float>& direct);
 
-// {plane: {"rmse", "bias", "max", "p99"}} of every plane the run has.
-nlohmann::ordered_json errors_of(const RunPlanes& planes, const RunPlanes& truth);
+// One error per plane of named_planes(); none where the run lacks the plane.
+using PlaneErrors = std::array<std::optional<ErrorStatistics>, kPlaneCount>;
 
-// {"E0": {"bias", "rms", "max", "bins"}, "E1": …}: the curves the run would give (α, or E₀/π where it has no
-// α, against E_b/π; true values where it has none of its own).
-nlohmann::ordered_json curve_errors_of(const RunPlanes& planes, const RunPlanes& truth);
+// Returns the errors of run − truth over the texels the run knows.
+PlaneErrors errors_of(const RunPlanes& planes, const RunPlanes& truth);
 
-// {model: {"light.20": {"rmse", …}, …}, …}
-nlohmann::ordered_json model_errors_of(const RunPlanes& planes, const FittedModels& fitted,
-                                       const RunPlanes& truth);
+// Errors of the curves a run gives: E₀/π and E₁/π against α, or against E₀/π where it has no α.
+using CurveErrors = std::array<CurveError, 2>;
 
-// All of it, as trade.json holds it (trade/trade_file.h).
-nlohmann::ordered_json score_run(const TradeRun& run, const MeasuredRun& measured, const FittedModels& fitted,
-                                 const RunPlanes& truth);
+// Returns none for a run without AO. True values stand in for planes the run lacks.
+std::optional<CurveErrors> curve_errors_of(const RunPlanes& planes, const RunPlanes& truth);
+
+struct ScoredRun : RunDescription {
+  RunCost cost;
+  uint64_t work = 0;  // RunPlanes::work
+  double known = 1;   // share of the texels the method has an answer for
+  PlaneErrors error;
+  std::optional<CurveErrors> curve;
+  std::vector<LightModelErrors> models;
+
+  // Whether it traced bounces itself.
+  bool has_bounces() const { return error[kFirstPlane].has_value(); }
+};
+
+ScoredRun score_run(const TradeRun& run, const MeasuredRun& measured, const FittedModels& fitted,
+                    const RunPlanes& truth);
 
 }  // namespace hemibake

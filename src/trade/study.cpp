@@ -1,15 +1,17 @@
 #include "trade/study.h"
 
-#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/constants.h"
-#include "core/context.h"
 #include "core/error.h"
+#include "core/context.h"
 #include "core/progress.h"
 #include "io/table_io.h"
 #include "trade/child_process.h"
 #include "trade/error_picture.h"
 #include "trade/plane_file.h"
+#include "trade/record.h"
 #include "trade/scored_run.h"
 
 namespace hemibake {
@@ -18,12 +20,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-// Of what the records hold and how they are made: another number, and those on disk are made again.
+// Version of what records hold and how they are made: records of another version are made again.
 constexpr int kRecordFormat = 1;
 
 fs::path reference_planes(const StudyOptions& options) { return options.folder / "reference.exr"; }
 
-// What decides the result of the reference, and with it of every run.
+// Returns all that decides the reference and with it every run.
 ordered_json study_key(const StudyOptions& options) {
   ordered_json key = options.provenance;
   key.erase("command");
@@ -34,38 +36,38 @@ ordered_json study_key(const StudyOptions& options) {
   return key;
 }
 
-// The result on record under this key, or null. What cannot be read is as good as not there.
-ordered_json find_record(const fs::path& path, const ordered_json& key) {
-  if (!fs::is_regular_file(path)) return nullptr;
+// Returns the result on record under this key; none where it cannot be read.
+template <class Result>
+std::optional<Result> find_record(const fs::path& path, const ordered_json& key) {
+  if (!fs::is_regular_file(path)) return std::nullopt;
   try {
     const ordered_json record = read_json(path);
-    if (record.is_object() && record.contains("key") && record.contains("result") && record["key"] == key)
-      return record["result"];
+    if (record.at("key") == key) return record.at("result").get<Result>();
   } catch (const InputError&) {
+  } catch (const ordered_json::exception&) {
   }
-  return nullptr;
+  return std::nullopt;
 }
 
-// The result of `work`, in a child, unless it is on record already.
-ordered_json recorded(const fs::path& path, const ordered_json& key, const std::string& what,
-                      size_t& made_now, const std::function<ordered_json()>& work) {
-  ordered_json result = find_record(path, key);
-  if (!result.is_null()) return result;
-  result = ordered_json::parse(run_in_child(what, [&work] { return work().dump(); }));
+// Returns the result of `work`, done in a child unless it is on record already.
+template <class Result>
+Result recorded(const fs::path& path, const ordered_json& key, const std::string& what, size_t& made_now,
+                const std::function<Result()>& work) {
+  if (const std::optional<Result> found = find_record<Result>(path, key)) return *found;
+  const std::string text = run_in_child(what, [&work] { return ordered_json(work()).dump(); });
+  const ordered_json result = ordered_json::parse(text);
   write_json(path, {{"key", key}, {"result", result}});
   ++made_now;
-  return result;
+  return result.get<Result>();
 }
 
-ordered_json make_reference_files(const StudyOptions& options) {
-  Reference reference = make_reference(options.load(), options.reference);
+ReferenceFacts make_reference_files(const StudyOptions& options) {
+  const Reference reference = make_reference(options.load(), options.reference);
   write_planes(reference_planes(options), reference.planes, options.provenance);
-  reference.facts["models_on_true_ao"] =
-      model_errors_of(reference.planes, reference.fitted, reference.planes);
   return reference.facts;
 }
 
-ordered_json make_run(const StudyOptions& options, const TradeRun& run, const ordered_json& reference) {
+ScoredRun make_run(const StudyOptions& options, const TradeRun& run, const FittedModels& models) {
   const Surface surface = options.load();
   const RunPlanes truth = read_run_planes(reference_planes(options), surface.width(), surface.height());
   Grid<float> direct = truth.cosine;
@@ -77,10 +79,10 @@ ordered_json make_run(const StudyOptions& options, const TradeRun& run, const or
     write_planes(options.folder / "planes" / (run.id() + ".exr"), measured.planes, provenance);
     write_error_pictures(options.folder / "errors", run.id(), measured.planes, truth, provenance);
   }
-  return score_run(run, measured, fitted_from_json(reference.at("models")), truth);
+  return score_run(run, measured, models, truth);
 }
 
-// The reference on record counts only with its planes.
+// Removes the reference's record where its planes are missing.
 void forget_reference_without_planes(const StudyOptions& options, const fs::path& record) {
   if (!fs::is_regular_file(reference_planes(options))) fs::remove(record);
 }
@@ -93,20 +95,19 @@ Study run_study(const StudyOptions& options) {
   forget_reference_without_planes(options, reference_record);
 
   Study study;
-  study.reference = recorded(reference_record, key, "reference", study.made_now,
-                             [&options] { return make_reference_files(options); });
+  study.reference = recorded<ReferenceFacts>(reference_record, key, "reference", study.made_now,
+                                             [&options] { return make_reference_files(options); });
   for (const char* name : {"runs", "planes", "errors"}) fs::create_directories(options.folder / name);
-  const std::vector<TradeRun> ladder =
-      make_ladder(options.reference.effort, study.reference.at("can_halve").get<bool>());
-  Progress progress("trade", ladder.size(), "run");
-  for (const TradeRun& run : ladder) {
+  const std::vector<TradeRun> sweep = make_sweep(options.reference.effort, study.reference.can_halve);
+  Progress progress("trade", sweep.size(), "run");
+  for (const TradeRun& run : sweep) {
     throw_if_cancelled();
     // The reference is the same bytes whenever it is made from this key.
     key["method"] = run.method;
-    key["settings"] = run.settings;
+    key["settings"] = json_from_settings(run.settings);
     const fs::path record = options.folder / "runs" / (run.id() + ".json");
-    study.runs.push_back(recorded(record, key, run.id(), study.made_now,
-                                  [&] { return make_run(options, run, study.reference); }));
+    study.runs.push_back(recorded<ScoredRun>(record, key, run.id(), study.made_now,
+                                             [&] { return make_run(options, run, study.reference.models); }));
     progress.advance(1);
   }
   return study;

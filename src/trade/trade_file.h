@@ -6,19 +6,17 @@
 //   albedos         [0.2, 0.5, 0.8, 0.95]
 //   planes          {name: description}: "ao" α, "direct" E₀/π, "first" E₁/π at albedo 1, "light.20" …
 //                   "light.95" E/π over all bounces at that albedo. Every error is of one of them, 0..1
-//   reference       trade/reference.h, Reference::facts: "mean", "error" and "best_run_error" {plane:
-//   number},
+//   reference       trade/reference.h, ReferenceFacts: "mean", "error", "best_run_error" {plane: number},
 //                   "referee" [{quantity, reference, referee, bias, half_width, texels}], "models"
 //                   (constants fitted to this map), "models_on_true_ao" {model: {plane: ERROR}}; and
 //                   "precision": {plane: {"error", "best_error", "best_run", "share", "reached"}}, the best
 //                   of all runs; "share" = error / best_error is to be at most 0.2
 //   models          {name: description} of the irradiance models
-//   runs            [RUN], in the order of the ladder
-//   fronts          {plane: [{"id", "model", "cpu_seconds", "rmse"}]}: the Pareto fronts of "ao", "direct"
-//   and
+//   runs            [RUN], in the order of the sweep
+//   fronts          {plane: [{"id", "model", "cpu_seconds", "rmse"}]}: the Pareto fronts of "ao", "direct",
 //                   "light.50", cheapest first; model is "" where the run has bounces of its own
 //   series          [{"name", "abscissa", "plane", "slope", "slope_error", "points": [[x, rmse], …]}]
-//   pictures        [{"file", "title"}], files in the folder of trade.json: SVG plots, PNG error maps
+//   pictures        [{"file", "title"}], PNG error maps in the folder of trade.json
 // RUN:
 //   id, method, settings {name: number or string}, series, abscissa, abscissa_value, representative (bool)
 //   cpu_seconds, wall_seconds, repeats, memory_bytes (trade/scored_run.h, RunCost), work
@@ -35,23 +33,20 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "io/provenance.h"
-#include "trade/ladder.h"
 #include "trade/study.h"
+#include "trade/sweep.h"
 
 namespace hemibake {
 
 const char* effort_name(Effort effort);
 
-// All but "pictures".
-nlohmann::ordered_json json_from_study(const Study& study, Effort effort, const Provenance& provenance);
+// folder: of the study, for the list of its pictures.
+nlohmann::ordered_json json_from_study(const Study& study, Effort effort, const Provenance& provenance,
+                                       const std::filesystem::path& folder);
 
-// json: of json_from_study.
-void write_trade_csv(const std::filesystem::path& path, const nlohmann::ordered_json& json);
-
-// For the terminal: the representative runs and the precision of the reference.
-std::string describe_study(const nlohmann::ordered_json& json);
+void write_trade_csv(const std::filesystem::path& path, const Study& study);
 
 }  // namespace hemibake

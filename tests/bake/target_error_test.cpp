@@ -42,8 +42,8 @@ double true_error(const Surface& surface, const TargetOptions& options, const Li
   };
   const RunPlanes truth = planes_of(bake(surface, options, 301, 7), 200);
   double worst = 0;
-  const nlohmann::ordered_json errors = errors_of(planes_of(seen, bounces), truth);
-  for (const auto& [plane, error] : errors.items()) worst = std::max(worst, error["rmse"].get<double>());
+  for (const auto& error : errors_of(planes_of(seen, bounces), truth))
+    if (error) worst = std::max(worst, error->rmse);
   return worst;
 }
 

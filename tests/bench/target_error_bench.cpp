@@ -39,10 +39,10 @@ double error_with(const Surface& surface, const TargetOptions& options, int rays
     add_bounces(bounce_light(seen, bounce).irradiance, planes);
     planes.uniform = seen.visible_fraction;
     planes.cosine = seen.direct_over_pi;
-    const nlohmann::ordered_json errors = errors_of(planes, truth);
+    planes.first_bounce = {};
     double worst = 0;
-    for (const auto& [plane, error] : errors.items())
-      if (plane != "first") worst = std::max(worst, error["rmse"].get<double>());
+    for (const auto& error : errors_of(planes, truth))
+      if (error) worst = std::max(worst, error->rmse);
     sum += worst;
   }
   return sum / static_cast<double>(std::size(kHeldOutSeeds));

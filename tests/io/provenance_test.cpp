@@ -39,26 +39,5 @@ TEST(Provenance, NamesTheInputWithoutItsFolder) {
   check_provenance(provenance);
 }
 
-TEST(Provenance, CommandLineIsQuotedForAShell) {
-  EXPECT_EQ(command_line({"/usr/bin/hemibake", "bake", "my map.png", "--size", "0.5", "it's", ""}),
-            "hemibake bake 'my map.png' --size 0.5 'it'\\''s' ''");
-}
-
-TEST(Provenance, CommandLineHoldsNothingThatChangesNoByte) {
-  EXPECT_EQ(command_line(
-                {"hemibake", "bake", "a.png", "--threads", "2", "-o", "out.exr", "--rays", "64", "--json"}),
-            "hemibake bake a.png --rays 64");
-  EXPECT_EQ(command_line(
-                {"hemibake", "bake", "--threads=2", "--output=b.exr", "-oc.exr", "--output", "d", "a.png"}),
-            "hemibake bake a.png");
-  EXPECT_EQ(command_line({"hemibake", "bake", "-o"}), "hemibake bake");
-  EXPECT_EQ(command_line({}), "hemibake");
-}
-
-TEST(Provenance, ProcessArgumentsStartWithTheProgram) {
-  ASSERT_FALSE(process_arguments().empty());
-  EXPECT_THAT(process_arguments()[0], HasSubstr("hemibake_tests"));
-}
-
 }  // namespace
 }  // namespace hemibake

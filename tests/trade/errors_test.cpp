@@ -50,7 +50,7 @@ TEST(CurveError, OfAShiftedAoIsTheShiftTimesTheSlope) {
   EXPECT_NEAR(error.largest, 0.05, 1e-4);
 }
 
-// FACTS.md §6: noise in AO biases the curve although no texel is biased. On v = α², with α uniform and noise
+// Noise in AO biases the curve although no texel is biased. On v = α², with α uniform and noise
 // of deviation s far from the ends, the bin at a gets E[(a − s x)²] = a² + s².
 TEST(CurveError, OfNoisyAoIsTheCurvature) {
   std::vector<float> ao, noisy, values;

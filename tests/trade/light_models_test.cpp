@@ -70,15 +70,6 @@ TEST(LightModels, WithoutConstantsAreLeftOut) {
   EXPECT_TRUE(light_model_errors({}, {}, truth).empty());
 }
 
-TEST(LightModels, ConstantsSurviveJson) {
-  const FittedModels fitted{PublishedModel{0.4, 1.2, 20, 3.2}, std::nullopt};
-  const FittedModels back = fitted_from_json(nlohmann::ordered_json::parse(json_from_fitted(fitted).dump()));
-  ASSERT_TRUE(back.eq12);
-  EXPECT_FALSE(back.bounded);
-  EXPECT_EQ(back.eq12->e, 1.2);
-  EXPECT_EQ(back.eq12->b, 3.2);
-}
-
 // Flat ground has one AO: nothing to fit.
 TEST(LightModels, FlatGroundHasNoFit) {
   Bake bake;

@@ -30,18 +30,17 @@ TEST(Reference, StatesItsOwnErrorHonestly) {
   const double of_direct = error_of(reference.planes.cosine.values, truth.direct_over_pi.values, {}).rmse;
   // An rms over 576 texels from one pair of seeds; neighbours share azimuths in sixteens, so it is known to
   // about 1/√(2·36) = 12 %: within a factor 1.5 at four of these. The finer truth has a hundredth of it.
-  EXPECT_NEAR(std::log(of_ao / reference.facts["error"]["ao"].get<double>()), 0, std::log(1.5));
-  EXPECT_NEAR(std::log(of_direct / reference.facts["error"]["direct"].get<double>()), 0, std::log(1.5));
+  EXPECT_NEAR(std::log(of_ao / reference.facts.error[kAoPlane]), 0, std::log(1.5));
+  EXPECT_NEAR(std::log(of_direct / reference.facts.error[kDirectPlane]), 0, std::log(1.5));
 }
 
 TEST(Reference, IsFiveTimesBetterThanTheBestRun) {
   const Surface surface = synthetic_surface(SyntheticKind::kShapes, 24, 16, 0.45);
   const Reference reference = make_reference(surface, quick());
-  for (const auto& [plane, error] : reference.facts["error"].items()) {
-    EXPECT_LE(error.get<double>(),
-              std::max(kReferenceShare * reference.facts["best_run_error"][plane].get<double>(), 1e-6))
-        << plane;
-  }
+  for (size_t p = 0; p < kPlaneCount; ++p)
+    EXPECT_LE(reference.facts.error[p],
+              std::max(kReferenceShare * reference.facts.best_run_error[p], kRoundingError))
+        << named_planes()[p].name;
 }
 
 // What a plain bake would say of the same map: sums of light grow with the albedo, and stay below 1.
@@ -60,8 +59,8 @@ TEST(Reference, FlatGroundIsExact) {
   const Surface surface = synthetic_surface(SyntheticKind::kFlat, 8, 8, 0.0);
   const Reference reference = make_reference(surface, quick());
   for (const float value : reference.planes.uniform.values) EXPECT_NEAR(value, 1, 1e-6);
-  EXPECT_LE(reference.facts["error"]["ao"].get<double>(), 1e-6);
-  EXPECT_FALSE(reference.fitted.bounded);
+  EXPECT_LE(reference.facts.error[kAoPlane], 1e-6);
+  EXPECT_FALSE(reference.facts.models.bounded);
 }
 
 // Where the links of more azimuths do not fit, seeds are added.
@@ -70,8 +69,8 @@ TEST(Reference, KeepsToItsMemory) {
   ReferenceOptions small = quick();
   small.memory_bytes = 1;
   const Reference reference = make_reference(surface, small);
-  EXPECT_EQ(reference.facts["azimuths_light"], top_light_azimuths(Effort::kQuick));
-  EXPECT_GT(reference.facts["seeds_light"], 2);
+  EXPECT_EQ(reference.facts.azimuths_light, top_light_azimuths(Effort::kQuick));
+  EXPECT_GT(reference.facts.seeds_light, 2);
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ constexpr uintptr_t kMappedTogether = uintptr_t{64} << 10;
 
 [[noreturn]] void fail(const std::filesystem::path& folder, const char* what) {
   throw InputError(
-      fmt::format("{}: could not {} a temporary file for links: {}, expected room for it or more "
-                  "--memory",
+      fmt::format("{}: could not {} a temporary file for links: {}, expected more disk space, or "
+                  "more memory allowed",
                   folder.string(), what, std::strerror(errno)));
 }
 

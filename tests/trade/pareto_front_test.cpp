@@ -1,4 +1,4 @@
-#include "trade/front.h"
+#include "trade/pareto_front.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,7 +39,6 @@ TEST(PowerLaw, IsRecovered) {
   }
   PowerLaw law = fit_power_law(x, y);
   EXPECT_NEAR(law.slope, -0.75, 1e-12);
-  EXPECT_NEAR(law.at(100), 0.3 * std::pow(100, -0.75), 1e-12);
   EXPECT_NEAR(law.slope_error, 0, 1e-7);
   // A point off by a factor e^h at one end: the slope moves by h·(u − ū)/Σ(u − ū)², and has an error.
   y[3] *= std::exp(0.1);

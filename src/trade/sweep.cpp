@@ -1,4 +1,4 @@
-#include "trade/ladder.h"
+#include "trade/sweep.h"
 
 namespace hemibake {
 
@@ -15,16 +15,16 @@ int top_ao_azimuths(Effort effort) {
 
 int top_light_azimuths(Effort effort) { return effort == Effort::kQuick ? 8 : 64; }
 
-std::vector<int> rungs(Effort effort, int low, int high, int quick_high) {
+std::vector<int> sweep_levels(Effort effort, int low, int high, int quick_high) {
   if (effort == Effort::kQuick)
     return low == quick_high ? std::vector<int>{low} : std::vector<int>{low, quick_high};
   std::vector<int> result;
-  for (int rung = low; rung <= high; rung *= effort == Effort::kFull ? 2 : 4) result.push_back(rung);
+  for (int level = low; level <= high; level *= effort == Effort::kFull ? 2 : 4) result.push_back(level);
   if (result.back() != high) result.push_back(high);
   return result;
 }
 
-std::vector<TradeRun> make_ladder(Effort effort, bool can_halve) {
+std::vector<TradeRun> make_sweep(Effort effort, bool can_halve) {
   std::vector<TradeRun> runs;
   add_tracer_runs(effort, can_halve, runs);
   add_estimator_runs(effort, runs);

@@ -1,4 +1,4 @@
-#include "trade/front.h"
+#include "trade/pareto_front.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,8 +27,6 @@ std::vector<size_t> pareto_front(std::span<const CostAndError> runs) {
   return front;
 }
 
-double PowerLaw::at(double x) const { return std::exp(intercept + slope * std::log(x)); }
-
 PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
   expect_equal(x.size(), y.size(), "points of a power law");
   std::vector<double> u, v;
@@ -51,7 +49,6 @@ PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
   }
   if (uu == 0) return {.points = 0};
   law.slope = uv / uu;
-  law.intercept = mean_v - law.slope * mean_u;
   if (law.points > 2) law.slope_error = std::sqrt(std::max(0.0, vv - law.slope * uv) / (n - 2) / uu);
   return law;
 }

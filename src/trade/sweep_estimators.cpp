@@ -2,7 +2,7 @@
 
 #include "core/constants.h"
 #include "estimators/estimator.h"
-#include "trade/ladder.h"
+#include "trade/sweep.h"
 
 namespace hemibake {
 namespace {
@@ -18,9 +18,9 @@ RunPlanes planes_of(Estimate&& estimate) {
 TradeRun disk_run(const DiskOptions& disk) {
   TradeRun run;
   run.method = "disk";
-  run.settings["passes"] = disk.passes;
-  run.settings["opening"] = disk.opening_ratio;
-  if (disk.vertex_area == VertexArea::kAverage) run.settings["area"] = "average";
+  run.add_setting("passes", disk.passes);
+  run.add_setting("opening", disk.opening_ratio);
+  if (disk.vertex_area == VertexArea::kAverage) run.add_setting("area", "average");
   run.perform = [disk](const Surface& surface, const Grid<float>&) {
     return planes_of(estimate_disk(surface, disk));
   };
@@ -31,13 +31,13 @@ TradeRun robust_run(const DiskRobustOptions& disk) {
   const DiskRobustOptions plain;
   TradeRun run;
   run.method = "disk-robust";
-  run.settings["passes"] = disk.passes;
-  run.settings["opening"] = disk.opening_ratio;
-  if (disk.robust != plain.robust) run.settings["last-pass"] = "disks";
+  run.add_setting("passes", disk.passes);
+  run.add_setting("opening", disk.opening_ratio);
+  if (disk.robust != plain.robust) run.add_setting("last-pass", "disks");
   if (disk.triangle_attenuation != plain.triangle_attenuation)
-    run.settings["triangle-attenuation"] = disk.triangle_attenuation;
+    run.add_setting("triangle-attenuation", disk.triangle_attenuation);
   if (disk.distance_attenuation_per_m != plain.distance_attenuation_per_m)
-    run.settings["distance-attenuation"] = disk.distance_attenuation_per_m;
+    run.add_setting("distance-attenuation", disk.distance_attenuation_per_m);
   run.perform = [disk](const Surface& surface, const Grid<float>&) {
     return planes_of(estimate_disk_robust(surface, disk));
   };
@@ -59,10 +59,10 @@ const char* name_of(BlurPasses blur) {
 TradeRun alchemy_run(const AlchemyOptions& alchemy, double radius_factor) {
   TradeRun run;
   run.method = "alchemy";
-  run.settings["taps"] = alchemy.taps;
-  run.settings["blur"] = name_of(alchemy.blur);
-  if (radius_factor != 1) run.settings["radius-factor"] = radius_factor;
-  if (alchemy.projection == Projection::kPerspective) run.settings["camera"] = "perspective";
+  run.add_setting("taps", alchemy.taps);
+  run.add_setting("blur", name_of(alchemy.blur));
+  if (radius_factor != 1) run.add_setting("radius-factor", radius_factor);
+  if (alchemy.projection == Projection::kPerspective) run.add_setting("camera", "perspective");
   run.abscissa_name = "taps";
   run.abscissa = alchemy.taps;
   run.perform = [alchemy, radius_factor](const Surface& surface, const Grid<float>&) {
@@ -76,8 +76,8 @@ TradeRun alchemy_run(const AlchemyOptions& alchemy, double radius_factor) {
 TradeRun horizon_run(const HorizonOptions& horizon) {
   TradeRun run;
   run.method = horizon.kind == AoKind::kCosine ? "horizon" : "horizon-uniform";
-  run.settings["azimuths"] = horizon.azimuths;
-  run.settings["steps"] = horizon.steps;
+  run.add_setting("azimuths", horizon.azimuths);
+  run.add_setting("steps", horizon.steps);
   run.abscissa_name = "azimuths";
   run.abscissa = horizon.azimuths;
   run.perform = [horizon](const Surface& surface, const Grid<float>&) {
@@ -90,8 +90,8 @@ TradeRun horizon_run(const HorizonOptions& horizon) {
 TradeRun disk_light_run(int bounces, int shadow_passes) {
   TradeRun run;
   run.method = "disk-light";
-  run.settings["bounces"] = bounces;
-  run.settings["shadow-passes"] = shadow_passes;
+  run.add_setting("bounces", bounces);
+  run.add_setting("shadow-passes", shadow_passes);
   run.perform = [bounces, shadow_passes](const Surface& surface, const Grid<float>& direct) {
     DiskLightOptions light;
     light.bounces = bounces;
@@ -140,7 +140,7 @@ void add_disk_runs(bool quick, std::vector<TradeRun>& runs) {
 
 void add_alchemy_runs(Effort effort, std::vector<TradeRun>& runs) {
   const bool quick = effort == Effort::kQuick;
-  for (const int taps : rungs(effort, 4, 128, 16)) {
+  for (const int taps : sweep_levels(effort, 4, 128, 16)) {
     AlchemyOptions alchemy;
     alchemy.taps = taps;
     TradeRun run = alchemy_run(alchemy, 1);
@@ -164,8 +164,8 @@ void add_alchemy_runs(Effort effort, std::vector<TradeRun>& runs) {
 void add_horizon_runs(Effort effort, std::vector<TradeRun>& runs) {
   const bool quick = effort == Effort::kQuick;
   for (const AoKind kind : {AoKind::kCosine, AoKind::kUniform}) {
-    for (const int azimuths : rungs(effort, 2, 32, 8)) {
-      for (const int steps : rungs(effort, 2, 32, 8)) {
+    for (const int azimuths : sweep_levels(effort, 2, 32, 8)) {
+      for (const int steps : sweep_levels(effort, 2, 32, 8)) {
         HorizonOptions horizon;
         horizon.azimuths = azimuths;
         horizon.steps = steps;

@@ -4,49 +4,34 @@
 #include "tracers/embree/embree.h"
 #include "tracers/march/march.h"
 #include "tracers/slice/slice.h"
-#include "trade/ladder.h"
 #include "trade/resample.h"
-#include "transport/bounces.h"
-#include "transport/trace_surface.h"
+#include "trade/sweep.h"
 
 namespace hemibake {
 namespace {
 
 constexpr int kNoBounces = 0;
-constexpr int kCutRays = 256;     // of the runs cut short at a distance
-constexpr int kPlainSlices = 32;  // azimuths of the runs that are about something else
-
-// What a bake with this tracer answers.
-RunPlanes trace_planes(const Tracer& tracer, int bounces) {
-  LightTransport seen = trace_surface(tracer, bounces > kNoBounces);
-  RunPlanes planes;
-  planes.work = seen.counts.rays;
-  if (bounces > kNoBounces) {
-    BounceOptions options;
-    options.bounces = bounces;
-    add_bounces(bounce_light(seen, options).irradiance, planes);
-  }
-  planes.uniform = std::move(seen.visible_fraction);
-  planes.cosine = std::move(seen.direct_over_pi);
-  return planes;
-}
+constexpr int kCutRays = 256;     // rays of the runs cut short at a distance
+constexpr int kPlainSlices = 32;  // azimuths of the runs that vary something else
 
 const char* name_of(DirectionSet directions) {
   return directions == DirectionSet::kUniform ? "uniform" : "cosine";
 }
 
+const char* name_of(TexelLinks links) { return links == TexelLinks::kNearest ? "nearest" : "bilinear"; }
+
 TradeRun ray_run(const RayOptions& rays, int bounces) {
   TradeRun run;
   run.method = bounces > kNoBounces ? "embree-light" : "embree";
-  run.settings["rays"] = rays.rays;
-  run.settings["directions"] = name_of(rays.directions);
-  if (bounces > kNoBounces) run.settings["bounces"] = bounces;
+  run.add_setting("rays", rays.rays);
+  run.add_setting("directions", name_of(rays.directions));
+  if (bounces > kNoBounces) run.add_setting("bounces", bounces);
   if (bounces > kNoBounces && rays.patch_kind == PatchKind::kTexels)
-    run.settings["texel-links"] = rays.texel_links == TexelLinks::kNearest ? "nearest" : "bilinear";
+    run.add_setting("texel-links", name_of(rays.texel_links));
   run.abscissa_name = "rays";
   run.abscissa = rays.rays;
   run.perform = [rays, bounces](const Surface& surface, const Grid<float>&) {
-    return trace_planes(*make_embree_tracer(surface, rays), bounces);
+    return trace_planes(*make_embree_tracer(surface, rays), bounces).planes;
   };
   return run;
 }
@@ -54,14 +39,14 @@ TradeRun ray_run(const RayOptions& rays, int bounces) {
 TradeRun slice_run(const SliceOptions& slices, int bounces) {
   TradeRun run;
   run.method = bounces > kNoBounces ? "slice-light" : "slice";
-  run.settings["azimuths"] = slices.azimuths;
-  if (bounces > kNoBounces) run.settings["bounces"] = bounces;
+  run.add_setting("azimuths", slices.azimuths);
+  if (bounces > kNoBounces) run.add_setting("bounces", bounces);
   if (bounces > kNoBounces && slices.patch_kind == PatchKind::kTexels)
-    run.settings["texel-links"] = slices.texel_links == TexelLinks::kNearest ? "nearest" : "bilinear";
+    run.add_setting("texel-links", name_of(slices.texel_links));
   run.abscissa_name = "azimuths";
   run.abscissa = slices.azimuths;
   run.perform = [slices, bounces](const Surface& surface, const Grid<float>&) {
-    return trace_planes(*make_slice_tracer(surface, slices), bounces);
+    return trace_planes(*make_slice_tracer(surface, slices), bounces).planes;
   };
   return run;
 }
@@ -70,34 +55,34 @@ TradeRun march_run(int rays) {
   TradeRun run;
   run.method = "march";
   run.series = "march";
-  run.settings["rays"] = rays;
+  run.add_setting("rays", rays);
   run.abscissa_name = "rays";
   run.abscissa = rays;
   run.perform = [rays](const Surface& surface, const Grid<float>&) {
     MarchOptions march;
     march.rays = rays;
-    return trace_planes(*make_march_tracer(surface, march), kNoBounces);
+    return trace_planes(*make_march_tracer(surface, march), kNoBounces).planes;
   };
   return run;
 }
 
-// As artists do it: what lies farther than this many height ranges counts as sky.
+// Takes all farther than `ranges` height ranges for sky, as artists do it.
 TradeRun cut_run(double ranges) {
   TradeRun run;
   run.method = "cut";
-  run.settings["rays"] = kCutRays;
-  run.settings["max-distance-ranges"] = ranges;
+  run.add_setting("rays", kCutRays);
+  run.add_setting("max-distance-ranges", ranges);
   run.perform = [ranges](const Surface& surface, const Grid<float>&) {
     RayOptions rays;
     rays.rays = kCutRays;
     const double range_m = height_range_m(surface);
     if (range_m > 0) rays.max_distance_m = ranges * range_m;
-    return trace_planes(*make_embree_tracer(surface, rays), kNoBounces);
+    return trace_planes(*make_embree_tracer(surface, rays), kNoBounces).planes;
   };
   return run;
 }
 
-// A bake of the map with `factor` times as many texels a side, brought back to the texels of this one.
+// Bakes the map with `factor` times as many texels a side, and resamples the planes to its own texels.
 TradeRun resolution_run(double factor, int bounces) {
   SliceOptions slices;
   slices.azimuths = kPlainSlices;
@@ -106,7 +91,7 @@ TradeRun resolution_run(double factor, int bounces) {
       std::string(factor < 1 ? "half" : "double") + "-resolution" + (bounces > kNoBounces ? "-light" : "");
   run.perform = [slices, factor, bounces](const Surface& surface, const Grid<float>&) {
     const Surface other = resample_surface(surface, factor);
-    RunPlanes planes = trace_planes(*make_slice_tracer(other, slices), bounces);
+    RunPlanes planes = trace_planes(*make_slice_tracer(other, slices), bounces).planes;
     for (const NamedPlane& named : named_planes())
       if (Grid<float>& plane = named.of(planes); !plane.empty())
         plane = resample_plane(plane, surface.width(), surface.height(), surface.edge);
@@ -118,7 +103,7 @@ TradeRun resolution_run(double factor, int bounces) {
 void add_ao_runs(Effort effort, std::vector<TradeRun>& runs) {
   const bool quick = effort == Effort::kQuick;
   for (const DirectionSet directions : {DirectionSet::kUniform, DirectionSet::kCosine}) {
-    for (const int count : rungs(effort, 4, 4096, 64)) {
+    for (const int count : sweep_levels(effort, 4, 4096, 64)) {
       RayOptions rays;
       rays.rays = count;
       rays.directions = directions;
@@ -128,7 +113,7 @@ void add_ao_runs(Effort effort, std::vector<TradeRun>& runs) {
       runs.push_back(std::move(run));
     }
   }
-  // Azimuths are worth more than rays: a rung for every doubling.
+  // Azimuths are worth more than rays: a level for every doubling.
   for (int azimuths = 2; azimuths <= top_ao_azimuths(effort); azimuths *= quick ? 8 : 2) {
     SliceOptions slices;
     slices.azimuths = azimuths;
@@ -137,7 +122,7 @@ void add_ao_runs(Effort effort, std::vector<TradeRun>& runs) {
     run.representative = azimuths == (quick ? top_ao_azimuths(effort) : kPlainSlices);
     runs.push_back(std::move(run));
   }
-  for (const int count : rungs(effort, 16, 1024, 16)) {
+  for (const int count : sweep_levels(effort, 16, 1024, 16)) {
     TradeRun run = march_run(count);
     run.representative = count == (quick ? 16 : 256);
     runs.push_back(std::move(run));
@@ -153,7 +138,7 @@ void add_ao_runs(Effort effort, std::vector<TradeRun>& runs) {
 
 void add_light_runs(Effort effort, bool can_halve, std::vector<TradeRun>& runs) {
   const bool quick = effort == Effort::kQuick;
-  for (const int count : rungs(effort, 4, 1024, 16)) {
+  for (const int count : sweep_levels(effort, 4, 1024, 16)) {
     RayOptions rays;
     rays.rays = count;
     TradeRun run = ray_run(rays, kTradeBounces);

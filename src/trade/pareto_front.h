@@ -1,4 +1,4 @@
-// What a set of measurements says: which of them are worth their time, and how fast error falls.
+// The Pareto front of cost and error, and the power law by which error falls.
 #pragma once
 
 #include <cstddef>
@@ -12,19 +12,17 @@ struct CostAndError {
   double error;
 };
 
-// Indices of the Pareto front: those that no other beats in both, by rising cost. Of equals the first.
+// Returns the indices of the runs that no other beats in both, by rising cost; among equals the first.
 std::vector<size_t> pareto_front(std::span<const CostAndError> runs);
 
-// log y = intercept + slope · log x by least squares.
+// log y = constant + slope · log x.
 struct PowerLaw {
-  double slope = 0, intercept = 0;
+  double slope = 0;
   double slope_error = 0;  // standard error; 0 where two points fit exactly
   size_t points = 0;       // below 2: nothing else is meaningful
-
-  double at(double x) const;
 };
 
-// Points where x or y is not above 0 do not count.
+// Fits by least squares of log y; leaves out points where x or y is not above 0.
 PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y);
 
 }  // namespace hemibake

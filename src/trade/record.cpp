@@ -1,0 +1,224 @@
+#include "trade/record.h"
+
+#include <nlohmann/json.hpp>
+
+namespace hemibake {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array<const char*, 2> kCurveNames = {"E0", "E1"};
+
+ordered_json json_of(const PlaneValues& values) {
+  ordered_json json = ordered_json::object();
+  for (size_t p = 0; p < kPlaneCount; ++p) json[named_planes()[p].name] = values[p];
+  return json;
+}
+
+PlaneValues plane_values_from(const ordered_json& json) {
+  PlaneValues values{};
+  for (size_t p = 0; p < kPlaneCount; ++p) values[p] = json.at(named_planes()[p].name);
+  return values;
+}
+
+ordered_json json_of(const ErrorStatistics& error) {
+  return {{"rmse", error.rmse}, {"bias", error.bias}, {"max", error.largest}, {"p99", error.p99}};
+}
+
+ErrorStatistics statistics_from(const ordered_json& json) {
+  return {json.at("rmse"), json.at("bias"), json.at("max"), json.at("p99")};
+}
+
+ordered_json json_of(const PlaneErrors& errors) {
+  ordered_json json = ordered_json::object();
+  for (size_t p = 0; p < kPlaneCount; ++p)
+    if (errors[p]) json[named_planes()[p].name] = json_of(*errors[p]);
+  return json;
+}
+
+PlaneErrors plane_errors_from(const ordered_json& json) {
+  PlaneErrors errors;
+  for (size_t p = 0; p < kPlaneCount; ++p)
+    if (const auto found = json.find(named_planes()[p].name); found != json.end())
+      errors[p] = statistics_from(*found);
+  return errors;
+}
+
+ordered_json json_of(const std::optional<CurveErrors>& curves) {
+  ordered_json json = ordered_json::object();
+  for (size_t c = 0; curves && c < kCurveNames.size(); ++c) {
+    const CurveError& error = (*curves)[c];
+    json[kCurveNames[c]] = {
+        {"bias", error.bias}, {"rms", error.rms}, {"max", error.largest}, {"bins", error.bins}};
+  }
+  return json;
+}
+
+std::optional<CurveErrors> curve_errors_from(const ordered_json& json) {
+  if (json.empty()) return std::nullopt;
+  CurveErrors curves;
+  for (size_t c = 0; c < kCurveNames.size(); ++c) {
+    const ordered_json& curve = json.at(kCurveNames[c]);
+    curves[c] = {curve.at("bias"), curve.at("rms"), curve.at("max"), curve.at("bins")};
+  }
+  return curves;
+}
+
+ordered_json json_of(const std::vector<LightModelErrors>& models) {
+  ordered_json json = ordered_json::object();
+  for (const LightModelErrors& model : models)
+    for (size_t a = 0; a < kJudgedAlbedos.size(); ++a)
+      json[model.model][named_planes()[kLightPlanes + a].name] = json_of(model.error[a]);
+  return json;
+}
+
+std::vector<LightModelErrors> light_model_errors_from(const ordered_json& json) {
+  std::vector<LightModelErrors> models;
+  for (const auto& [name, errors] : json.items()) {
+    LightModelErrors& model = models.emplace_back(LightModelErrors{name, {}});
+    for (size_t a = 0; a < kJudgedAlbedos.size(); ++a)
+      model.error[a] = statistics_from(errors.at(named_planes()[kLightPlanes + a].name));
+  }
+  return models;
+}
+
+ordered_json json_of(const FittedModels& models) {
+  ordered_json json = {{"eq12-refitted", nullptr}, {"bounded", nullptr}};
+  if (const auto& m = models.eq12)
+    json["eq12-refitted"] = {{"k", m->k}, {"e", m->e}, {"A", m->a}, {"B", m->b}};
+  if (const auto& m = models.bounded)
+    json["bounded"] = {{"k0", m->k0}, {"k1", m->k1}, {"q", m->q}, {"d", m->d}};
+  return json;
+}
+
+FittedModels fitted_models_from(const ordered_json& json) {
+  FittedModels models;
+  if (const auto& m = json.at("eq12-refitted"); !m.is_null())
+    models.eq12 = PublishedModel{m.at("k"), m.at("e"), m.at("A"), m.at("B")};
+  if (const auto& m = json.at("bounded"); !m.is_null())
+    models.bounded = BoundedModel{m.at("k0"), m.at("k1"), m.at("q"), m.at("d")};
+  return models;
+}
+
+ordered_json json_of(const std::vector<RefereeRow>& rows) {
+  ordered_json json = ordered_json::array();
+  for (const RefereeRow& row : rows)
+    json.push_back({{"quantity", row.quantity},
+                    {"reference", row.bake_mean},
+                    {"referee", row.referee_mean},
+                    {"bias", row.bias},
+                    {"half_width", row.half_width},
+                    {"texels", row.texels}});
+  return json;
+}
+
+std::vector<RefereeRow> referee_rows_from(const ordered_json& json) {
+  std::vector<RefereeRow> rows;
+  for (const ordered_json& entry : json) {
+    RefereeRow& row = rows.emplace_back();
+    row.quantity = entry.at("quantity");
+    row.bake_mean = entry.at("reference");
+    row.referee_mean = entry.at("referee");
+    row.bias = entry.at("bias");
+    row.half_width = entry.at("half_width");
+    row.texels = entry.at("texels");
+  }
+  return rows;
+}
+
+std::vector<Setting> settings_from(const ordered_json& json) {
+  std::vector<Setting> settings;
+  for (const auto& [name, value] : json.items()) {
+    Setting& setting =
+        settings.emplace_back(Setting{name, value.is_string() ? value.get<std::string>() : ""});
+    if (value.is_number_float()) setting.value = value.get<double>();
+    if (value.is_number_integer()) setting.value = value.get<int>();
+  }
+  return settings;
+}
+
+}  // namespace
+
+ordered_json json_from_settings(const std::vector<Setting>& settings) {
+  ordered_json json;
+  for (const Setting& setting : settings)
+    std::visit([&](const auto& value) { json[setting.name] = value; }, setting.value);
+  return json;
+}
+
+void to_json(ordered_json& json, const ReferenceFacts& facts) {
+  json = {{"width", facts.width},
+          {"height", facts.height},
+          {"can_halve", facts.can_halve},
+          {"height_range_m", facts.height_range_m},
+          {"texel_size_m", facts.texel_size_m},
+          {"bounces", facts.bounces},
+          {"azimuths_ao", facts.azimuths_ao},
+          {"error", json_of(facts.error)},
+          {"best_run_error", json_of(facts.best_run_error)},
+          {"azimuths_light", facts.azimuths_light},
+          {"seeds_light", facts.seeds_light},
+          {"mean", json_of(facts.mean)},
+          {"referee", json_of(facts.referee)},
+          {"models", json_of(facts.models)},
+          {"cpu_seconds", facts.cpu_seconds},
+          {"models_on_true_ao", json_of(facts.models_on_true_ao)}};
+}
+
+void from_json(const ordered_json& json, ReferenceFacts& facts) {
+  facts.width = json.at("width");
+  facts.height = json.at("height");
+  facts.can_halve = json.at("can_halve");
+  facts.height_range_m = json.at("height_range_m");
+  facts.texel_size_m = json.at("texel_size_m");
+  facts.bounces = json.at("bounces");
+  facts.azimuths_ao = json.at("azimuths_ao");
+  facts.error = plane_values_from(json.at("error"));
+  facts.best_run_error = plane_values_from(json.at("best_run_error"));
+  facts.azimuths_light = json.at("azimuths_light");
+  facts.seeds_light = json.at("seeds_light");
+  facts.mean = plane_values_from(json.at("mean"));
+  facts.referee = referee_rows_from(json.at("referee"));
+  facts.models = fitted_models_from(json.at("models"));
+  facts.cpu_seconds = json.at("cpu_seconds");
+  facts.models_on_true_ao = light_model_errors_from(json.at("models_on_true_ao"));
+}
+
+void to_json(ordered_json& json, const ScoredRun& run) {
+  json = {{"id", run.id()},
+          {"method", run.method},
+          {"settings", json_from_settings(run.settings)},
+          {"series", run.series},
+          {"abscissa", run.abscissa_name},
+          {"abscissa_value", run.abscissa},
+          {"representative", run.representative},
+          {"cpu_seconds", run.cost.cpu_seconds},
+          {"wall_seconds", run.cost.wall_seconds},
+          {"repeats", run.cost.repeats},
+          {"memory_bytes", run.cost.memory_bytes},
+          {"work", run.work},
+          {"known", run.known},
+          {"error", json_of(run.error)},
+          {"curve", json_of(run.curve)},
+          {"models", json_of(run.models)}};
+}
+
+void from_json(const ordered_json& json, ScoredRun& run) {
+  run.method = json.at("method");
+  run.settings = settings_from(json.at("settings"));
+  run.series = json.at("series");
+  run.abscissa_name = json.at("abscissa");
+  run.abscissa = json.at("abscissa_value");
+  run.representative = json.at("representative");
+  run.cost.cpu_seconds = json.at("cpu_seconds");
+  run.cost.wall_seconds = json.at("wall_seconds");
+  run.cost.repeats = json.at("repeats");
+  run.cost.memory_bytes = json.at("memory_bytes");
+  run.work = json.at("work");
+  run.known = json.at("known");
+  run.error = plane_errors_from(json.at("error"));
+  run.curve = curve_errors_from(json.at("curve"));
+  run.models = light_model_errors_from(json.at("models"));
+}
+
+}  // namespace hemibake
