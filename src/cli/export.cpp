@@ -19,7 +19,7 @@ namespace hemibake {
 namespace {
 
 const std::map<std::string, Language> kLanguages = {
-    {"glsl", Language::glsl}, {"hlsl", Language::hlsl}, {"cpp", Language::cpp}};
+    {"glsl", Language::kGlsl}, {"hlsl", Language::kHlsl}, {"cpp", Language::kCpp}};
 constexpr const char* kTableTarget = "csv";
 
 struct ExportOptions {

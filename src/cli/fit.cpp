@@ -22,8 +22,8 @@ struct FitOptions {
   std::vector<std::string> curves;
   std::string output;
   std::vector<std::string> models = {"published", "bounded"};
-  std::string abscissa = to_string(Abscissa::center);
-  std::string weights = to_string(Weights::none);
+  std::string abscissa = to_string(Abscissa::kCenter);
+  std::string weights = to_string(Weights::kNone);
 };
 
 std::string describe(const NamedFit& named) {
@@ -54,7 +54,7 @@ int run_fit(const FitOptions& options) {
   check_output_path(options.output, {".json"});
   const Abscissa abscissa = abscissa_from_string(options.abscissa);
   const Weights weights = weights_from_string(options.weights);
-  if (abscissa == Abscissa::published && options.curves.size() > 1) {
+  if (abscissa == Abscissa::kMayaux2018 && options.curves.size() > 1) {
     throw InputError("--abscissa published: several sets of curves, expected one");
   }
   std::vector<Curves> sets;

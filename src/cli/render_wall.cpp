@@ -86,7 +86,7 @@ std::optional<ShadingModel> find_model(const RenderOptions& options, const Bake&
   } else {
     path = options.bake;
     try {
-      fits.fits = fit_model(options.model, make_curves(bake, kBins), Abscissa::center, Weights::none);
+      fits.fits = fit_model(options.model, make_curves(bake, kBins), Abscissa::kCenter, Weights::kNone);
     } catch (const std::runtime_error& error) {
       throw_if_interrupted();
       reason = error.what();

@@ -11,13 +11,13 @@
 namespace hemibake {
 namespace {
 
-// By how much a value is outside low..high; NaN stays NaN and fails.
+// Returns the distance of a value from low..high; NaN stays NaN and fails.
 double outside(double value, double low, double high) {
   if (std::isnan(value)) return value;
   return std::max({0.0, low - value, value - high});
 }
 
-// The worst bin of one kind of violation.
+// Keeps the worst bin of one kind of violation.
 struct Worst {
   double value = 0;
   size_t bin = 0;

@@ -11,10 +11,10 @@
 namespace hemibake {
 namespace {
 
-// Rounding in a tracer's sum of weights may leave α this far outside 0..1 (a few float ulps).
+// Distance of α from 0..1 that rounding in a tracer's sum of weights may leave (a few float ulps).
 constexpr float kAoRounding = 1e-6F;
 
-// Texel `i` of a grid as "(x, y)".
+// Writes texel `i` of a grid as "(x, y)".
 std::string texel_name(const Grid<float>& grid, size_t i) {
   const size_t width = static_cast<size_t>(grid.width);
   return fmt::format("({}, {})", i % width, i / width);

@@ -8,7 +8,7 @@
 namespace hemibake {
 namespace {
 
-// What the three languages spell differently; everything else of the text is the same in all of them.
+// Holds the parts of the text that differ between the three languages.
 struct Spelling {
   std::string_view open;             // before the functions
   std::string_view close;            // after them
@@ -37,17 +37,17 @@ constexpr Spelling kCpp{
 
 const Spelling& spelling(Language language) {
   switch (language) {
-    case Language::glsl:
+    case Language::kGlsl:
       return kGlsl;
-    case Language::hlsl:
+    case Language::kHlsl:
       return kHlsl;
-    case Language::cpp:
+    case Language::kCpp:
       return kCpp;
   }
   throw std::logic_error("an unknown shader language");
 }
 
-// Every digit a float can tell, with a decimal point.
+// Writes a float with all its digits and a decimal point.
 std::string literal(double value, const Spelling& s) {
   std::string text = fmt::format("{:.9g}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
@@ -194,7 +194,7 @@ std::string shader_text(const BoundedModel& model, Language language,
 
 std::string shader_text(const GuardedModel& model, Language language,
                         const std::vector<std::string>& origin) {
-  const PublishedModel& p = model.published;
+  const Mayaux2018Model& p = model.published;
   const Constants constants = {
       {"$k", p.k}, {"$e", p.e}, {"$a", p.a}, {"$negative_b", -p.b}, {"#tiny", kSmallestEscape}};
   return assemble(kGuarded, constants, language, origin);

@@ -97,9 +97,9 @@ Json json_from_bake(const BakeFile& file, std::span<const ReportModel> models, c
 
 template <class Model>
 Json shader_texts(const Model& model, const std::vector<std::string>& origin) {
-  return {{"glsl", shader_text(model, Language::glsl, origin)},
-          {"hlsl", shader_text(model, Language::hlsl, origin)},
-          {"cpp", shader_text(model, Language::cpp, origin)}};
+  return {{"glsl", shader_text(model, Language::kGlsl, origin)},
+          {"hlsl", shader_text(model, Language::kHlsl, origin)},
+          {"cpp", shader_text(model, Language::kCpp, origin)}};
 }
 
 Json json_from_score(const Prediction& prediction, const Curves& curves) {
@@ -114,7 +114,7 @@ Json json_from_model(const ReportModel& model, const std::optional<Curves>& curv
     json["constants"] = {{"k0", m.k0}, {"k1", m.k1}, {"q", m.q}, {"d", m.d}};
     json["shader"] = shader_texts(m, model.origin);
   } else {
-    const PublishedModel& m = model.guarded.published;
+    const Mayaux2018Model& m = model.guarded.published;
     json["constants"] = {{"k", m.k}, {"e", m.e}, {"A", m.a}, {"B", m.b}};
     json["shader"] = shader_texts(model.guarded, model.origin);
   }

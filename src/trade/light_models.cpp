@@ -39,7 +39,7 @@ Evaluate evaluator(const std::string& model, const FittedModels& fitted) {
 
 std::vector<NamedFit> fits_or_none(const char* model, const Curves& curves) {
   try {
-    return fit_model(model, curves, Abscissa::center, Weights::none);
+    return fit_model(model, curves, Abscissa::kCenter, Weights::kNone);
   } catch (const std::runtime_error&) {
     throw_if_interrupted();
     return {};
@@ -53,7 +53,7 @@ FittedModels fit_light_models(const Curves& curves) {
   const std::vector<NamedFit> published = fits_or_none("published", curves);
   if (published.size() == 2)
     fitted.eq12 =
-        PublishedModel{parameter_value(published[0].fit, "k"), parameter_value(published[0].fit, "e"),
+        Mayaux2018Model{parameter_value(published[0].fit, "k"), parameter_value(published[0].fit, "e"),
                        parameter_value(published[1].fit, "A"), parameter_value(published[1].fit, "B")};
   const std::vector<NamedFit> bounded = fits_or_none("bounded", curves);
   if (bounded.size() == 2)
@@ -75,7 +75,7 @@ nlohmann::ordered_json json_from_fitted(const FittedModels& fitted) {
 FittedModels fitted_from_json(const nlohmann::ordered_json& json) {
   FittedModels fitted;
   if (const auto& m = json.at("eq12-refitted"); !m.is_null())
-    fitted.eq12 = PublishedModel{m.at("k"), m.at("e"), m.at("A"), m.at("B")};
+    fitted.eq12 = Mayaux2018Model{m.at("k"), m.at("e"), m.at("A"), m.at("B")};
   if (const auto& m = json.at("bounded"); !m.is_null())
     fitted.bounded = BoundedModel{m.at("k0"), m.at("k1"), m.at("q"), m.at("d")};
   return fitted;

@@ -18,7 +18,7 @@ namespace hemibake {
 // Constants fitted to the curves of the map itself: the best its models can do. Absent where the map has too
 // few AO values for a fit (flat ground has one).
 struct FittedModels {
-  std::optional<PublishedModel> eq12;  // the formulas of 2018
+  std::optional<Mayaux2018Model> eq12;  // the formulas of 2018
   std::optional<BoundedModel> bounded;
 };
 
