@@ -10,21 +10,10 @@
 #include "core/parallel.h"
 #include "core/statistics.h"
 #include "surface/facets.h"
+#include "transport/series.h"
 
 namespace hemibake {
 namespace {
-
-// The largest ratio a series is continued with: nothing is brighter for bounces after about the thousandth.
-constexpr double kLargestRatio = 0.999;
-
-// last · (q + q² + …), q = last/before, but no more than `albedo`, the most that any bounce sends on: in a
-// pit that light is still seeping into, one bounce may bring more than the one before, and all bounces
-// cannot.
-double rest_of_series(double before, double last, double albedo) {
-  if (!(before > 0 && last > 0)) return 0;
-  const double ratio = std::min({last / before, albedo, kLargestRatio});
-  return last * ratio / (1 - ratio);
-}
 
 // albedo: the largest on the wall, per channel.
 void add_up(Relit& relit, const glm::vec3& albedo, double most) {
@@ -38,10 +27,9 @@ void add_up(Relit& relit, const glm::vec3& albedo, double most) {
       for (const Grid<glm::vec3>& bounce : relit.bounces) sum += static_cast<double>(bounce[i][c]);
       double rest = 0;
       if (count >= 3)
-        rest = std::min(rest_of_series(static_cast<double>(relit.bounces[count - 2][i][c]),
-                                       static_cast<double>(relit.bounces[count - 1][i][c]),
-                                       static_cast<double>(albedo[c])),
-                        std::max(0.0, most - sum));
+        rest = series_tail(static_cast<double>(relit.bounces[count - 2][i][c]),
+                           static_cast<double>(relit.bounces[count - 1][i][c]),
+                           static_cast<double>(albedo[c]), most - sum);
       relit.total[i][c] = static_cast<float>(sum + rest);
       rests.add(rest);
       relit.largest_rest = std::max(relit.largest_rest, rest);

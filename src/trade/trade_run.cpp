@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "core/constants.h"
+#include "transport/series.h"
 
 namespace hemibake {
 
@@ -37,12 +38,8 @@ void add_bounces(const std::vector<Grid<float>>& irradiance, RunPlanes& planes) 
   for (float& value : planes.first_bounce.values) value /= static_cast<float>(kPi);
   for (size_t a = 0; a < kTradeAlbedos.size(); ++a) {
     planes.all_bounces[a] = Grid<float>(irradiance[0].width, irradiance[0].height);
-    for (size_t i = 0; i < texels; ++i) {
-      double sum = 0;
-      for (size_t b = irradiance.size(); b-- > 0;)
-        sum = sum * kTradeAlbedos[a] + static_cast<double>(irradiance[b][i]);
-      planes.all_bounces[a][i] = static_cast<float>(sum / kPi);
-    }
+    for (size_t i = 0; i < texels; ++i)
+      planes.all_bounces[a][i] = static_cast<float>(sum_bounces(irradiance, i, kTradeAlbedos[a]) / kPi);
   }
 }
 
