@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/common_options.h"
 #include "cli/name_file.h"
+#include "cli/print/fits.h"
 #include "fitting/models.h"
 #include "io/curves_file.h"
 #include "io/fit_file.h"
@@ -26,18 +27,7 @@ struct FitOptions {
   std::string weights = to_string(Weights::kNone);
 };
 
-std::string describe(const NamedFit& named) {
-  const Fit& fit = named.fit;
-  std::string text = fmt::format("{:12} {}\n{:12}", named.name, fit.formula, "");
-  for (const FitParameter& parameter : fit.parameters) {
-    text += fmt::format(" {} = {:.6g}", parameter.name, parameter.value);
-    if (parameter.standard_error) text += fmt::format(" ± {:.2g}", *parameter.standard_error);
-    text += ',';
-  }
-  return text + fmt::format(" rms {:.5f}, max {:.5f}, {} points\n", fit.rms, fit.max_error, fit.points);
-}
-
-// `input` and `input_sha256` name every input, in order.
+// Names every input, in order, in `input` and `input_sha256`.
 Provenance provenance_of(const std::vector<std::string>& paths) {
   Provenance provenance = make_provenance(command_line(process_arguments()), paths[0]);
   for (size_t i = 1; i < paths.size(); ++i) {
@@ -74,9 +64,7 @@ int run_fit(const FitOptions& options) {
   for (const std::string& warning : fit_warnings(file.fits)) {
     fmt::print(stderr, "hemibake: {}: warning: {}\n", names, warning);
   }
-  std::string text;
-  for (const NamedFit& named : file.fits) text += describe(named);
-  print_result(options.common, json_from_fits(file), text);
+  print_result(options.common, json_from_fits(file), text_from_fits(file.fits));
   return 0;
 }
 

@@ -93,8 +93,9 @@ std::optional<ShadingModel> find_model(const RenderOptions& options, const Bake&
       return std::nullopt;
     }
   }
-  if (options.model == "published") return shading_model("published", guarded_model(fits, path));
-  return shading_model("bounded", bounded_model(fits, path));
+  const ShaderModel model = with_file_context(
+      path, [&] { return fitted_model(fits.fits, model_kind_from_string(options.model)); });
+  return std::visit([&](const auto& m) { return shading_model(options.model, m); }, model);
 }
 
 Grid<glm::vec3> unshaded_sky(const Sky& sky, const Bake& bake, const std::optional<Surface>& surface) {

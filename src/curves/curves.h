@@ -1,5 +1,5 @@
-// Sorts texels into bins by their AO and keeps the mean and spread of every bounce in each: irradiance is not a
-// function of AO, which a mean without its spread would hide.
+// Sorts texels into bins by their AO and keeps the mean and spread of every bounce in each: irradiance is not
+// a function of AO, which a mean without its spread would hide.
 #pragma once
 
 #include <span>
@@ -31,6 +31,11 @@ struct Curves {
 
 // Returns the centre of a bin on the AO axis, 0..1.
 double bin_center(const CurveBin& bin);
+
+// Returns E/π of all bounces of one bin at albedo `albedo`, 0..1: Σ ρᵇ E_b/π and the tail after the last
+// stored bounce, a geometric series with the ratio of the last two bounces, lowered where the total at albedo
+// 1 would exceed π.
+double total_over_pi(const CurveBin& bin, double albedo);
 
 // Returns the histogram of a bake: texels of bin min(bins − 1, ⌊bins · α⌋), summed in double in texel order.
 // bake: planes `visible_fraction` (0..1) and at least one of `irradiance` (0..), all of the same size.

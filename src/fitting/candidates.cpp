@@ -152,8 +152,9 @@ Prediction jimenez_of(const std::array<double, 6>& p, bool over_ao) {
 
 Prediction jimenez_refit(const Curves& curves, bool over_ao) {
   const std::vector<double> albedos = fit_albedos();
-  const Fit fit = fit_jimenez(over_ao ? totals_of(curves) : visibility_points(curves, albedos, Weights::kNone),
-                              static_cast<int>(albedos.size()));
+  const Fit fit =
+      fit_jimenez(over_ao ? totals_of(curves) : visibility_points(curves, albedos, Weights::kNone),
+                  static_cast<int>(albedos.size()));
   std::array<double, 6> p;
   for (size_t i = 0; i < 6; ++i) p[i] = fit.parameters[i].value;
   return jimenez_of(p, over_ao);

@@ -34,12 +34,13 @@ Score score_prediction(const Prediction& prediction, const Curves& curves);
 struct Comparison {
   std::vector<Score> own;     // of each set of curves, fitted to it
   std::vector<Score> others;  // of each, fitted to the bins of all the other sets; empty for a single set
-  // Σ of the small-sample Akaike criterion of the fits in `own`, a bin being one observation; only differences
-  // mean anything, lower is better. None where a set has too few bins.
+  // Σ of the small-sample Akaike criterion of the fits in `own`, a bin being one observation; only
+  // differences mean anything, lower is better. None where a set has too few bins.
   std::optional<double> aicc;
 };
 
-// Fits `candidate` to each of `sets` (at least one) and to all the others together. Throws what the fits throw.
+// Fits `candidate` to each of `sets` (at least one) and to all the others together. Throws what the fits
+// throw.
 Comparison compare_candidate(const Candidate& candidate, const std::vector<Curves>& sets);
 
 }  // namespace hemibake

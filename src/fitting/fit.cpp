@@ -10,6 +10,7 @@
 
 #include "core/constants.h"
 #include "core/error.h"
+#include "transport/series.h"
 
 namespace hemibake {
 namespace {
@@ -79,11 +80,8 @@ std::vector<BinPosition> usable_bins(const Curves& curves, Abscissa abscissa, We
 }
 
 CurvePoint total_point(const CurveBin& bin, double abscissa, double albedo, Weights weights) {
-  double stddev = 0, power = 1;
-  for (const BounceStatistics& bounce : bin.bounces) {
-    stddev += power * bounce.stddev;
-    power *= albedo;
-  }
+  const double stddev = sum_bounces(
+      bin.bounces.size(), [&](size_t b) { return bin.bounces[b].stddev; }, albedo);
   return {abscissa, total_over_pi(bin, albedo), raw_weight(bin.count, stddev / kPi, weights), albedo};
 }
 
@@ -103,23 +101,6 @@ std::vector<CurvePoint> curve_points(const Curves& curves, int bounce, Abscissa 
   }
   scale_to_mean_one(points);
   return points;
-}
-
-double total_over_pi(const CurveBin& bin, double albedo) {
-  double sum = 0, power = 1, at_albedo_one = 0;
-  for (const BounceStatistics& bounce : bin.bounces) {
-    sum += power * bounce.mean;
-    at_albedo_one += bounce.mean;
-    power *= albedo;
-  }
-  const size_t count = bin.bounces.size();
-  if (count < 3 || bin.bounces[count - 1].mean >= bin.bounces[count - 2].mean) return sum / kPi;
-  // Not more than the energy not yet seen, which a slow bin's last two bounces do not tell well: with ratio r
-  // what follows the last bounce E is E r/(1 − r) at albedo 1.
-  const double last = bin.bounces[count - 1].mean, left = std::max(0.0, kPi - at_albedo_one);
-  const double ratio = std::min(last / bin.bounces[count - 2].mean, left / (left + last));
-  sum += power * last * ratio / (1 - albedo * ratio);
-  return sum / kPi;
 }
 
 std::vector<CurvePoint> total_points(const Curves& curves, std::span<const double> albedos, Abscissa abscissa,

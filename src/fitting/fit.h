@@ -36,11 +36,6 @@ struct CurvePoint {
 // Throws InputError where the weights need counts that `curves` lacks.
 std::vector<CurvePoint> curve_points(const Curves& curves, int bounce, Abscissa abscissa, Weights weights);
 
-// E/π of all bounces of one bin at albedo `albedo` (0..1): Σ ρᵇ E_b/π, the bounces after the last stored one
-// as a geometric series with the ratio of the last two, or with a lower one where that would add up to more
-// than π at albedo 1.
-double total_over_pi(const CurveBin& bin, double albedo);
-
 // Returns the points (α, ρ, total_over_pi), bin by bin and within a bin in the order of `albedos`.
 // albedos: ρ, each 0..1.
 // weights: with kStandardError, the spread of a total is its upper bound, the sum of its bounces' spreads.

@@ -22,8 +22,8 @@ constexpr size_t kStartsTried = 3;
 // condition of JᵀJ, reaches the rounding of a double.
 constexpr double kSmallestConditioning = 1e-7;
 
-// Least effect (rms, E/π) on the curve of changing a determined parameter by its own size or by 1: the rounding
-// of the values.
+// Least effect (rms, E/π) on the curve of changing a determined parameter by its own size or by 1: the
+// rounding of the values.
 constexpr double kSmallestEffect = 1e-12;
 
 struct Evaluation {

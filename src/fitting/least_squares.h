@@ -1,4 +1,5 @@
-// Fits a formula to curve points by bounded nonlinear least squares (Ceres). Only for this folder's .cpp files.
+// Fits a formula to curve points by bounded nonlinear least squares (Ceres). Only for this folder's .cpp
+// files.
 #pragma once
 
 #include <ceres/ceres.h>

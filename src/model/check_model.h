@@ -8,7 +8,8 @@
 
 namespace hemibake {
 
-// Evaluates F₀, τ and the total in float over 1001 α × 21 ρ, ends included: finite, in 0..1, total 1 at ρ = 1.
+// Evaluates F₀, τ and the total in float over 1001 α × 21 ρ, ends included: finite, in 0..1, total 1 at ρ
+// = 1.
 template <class Model>
 Checks check_model(const Model& model, double tolerance) {
   constexpr int kSteps = 1000, kAlbedoSteps = 20;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <variant>
 
 #include "model/closed_forms.h"
 
@@ -74,7 +75,8 @@ struct Mayaux2018Model {
   }
 };
 
-// Cuts F₀ of the model of 2018 at 1 and its τ to 0..1: in 0..1 everywhere, unchanged where that model is sound.
+// Cuts F₀ of the model of 2018 at 1 and its τ to 0..1: in 0..1 everywhere, unchanged where that model is
+// sound.
 struct GuardedModel {
   Mayaux2018Model formulas;
 
@@ -102,6 +104,9 @@ struct GuardedModel {
     return std::min(total_factor(from_sky, 1 - from_sky, escape(ao), albedo), T(1));
   }
 };
+
+// Holds a model that textures, pictures and shader texts can be made with.
+using ShaderModel = std::variant<BoundedModel, GuardedModel>;
 
 // Evaluates max(V, jimenez_cubic), by default with the constants of Jimenez et al. 2016: all bounces at once.
 // visibility: V = E₀/π, the cosine-weighted visible fraction, not α.

@@ -7,8 +7,8 @@
 #include "core/error.h"
 #include "fitting/bounded.h"
 #include "fitting/candidates.h"
-#include "fitting/models.h"
 #include "fitting/mayaux2018.h"
+#include "fitting/models.h"
 #include "model/model.h"
 
 namespace hemibake {

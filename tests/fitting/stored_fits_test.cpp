@@ -83,7 +83,8 @@ TEST(StoredFits, PublishedCurvesGiveTheStoredConstants) {
   const fs::path path = fs::path(HEMIBAKE_REFERENCE_DIR) / "published_curves.csv";
   if (!fs::exists(path)) GTEST_SKIP() << path << " is not there";
   const Curves curves = read_curves(path);
-  expect_same(stored("published_refit"), refit(curves, {"published"}, Abscissa::kMayaux2018), kSameMinimum, 0);
+  expect_same(stored("published_refit"), refit(curves, {"published"}, Abscissa::kMayaux2018), kSameMinimum,
+              0);
   expect_same(stored("published_centers"), refit(curves, {"published", "bounded"}, Abscissa::kCenter),
               kSameMinimum, 0);
   expect_same(stored("published_bounces"), refit(curves, {"bounces", "jimenez"}, Abscissa::kCenter),

@@ -109,9 +109,9 @@ TEST(GuardedModel, IsThePublishedModelWhereThatOneIsSound) {
   const GuardedModel guarded;
   for (double ao = 0.01; ao < 0.76; ao += 0.01) {
     for (const double albedo : {0.1, 0.5, 0.9, 1.0}) {
-      EXPECT_NEAR(guarded.total(ao, albedo), guarded.published.total(ao, albedo), 1e-14);
+      EXPECT_NEAR(guarded.total(ao, albedo), guarded.formulas.total(ao, albedo), 1e-14);
     }
-    EXPECT_NEAR(guarded.bounce_ratio(ao), guarded.published.bounce_ratio(ao), 1e-14);
+    EXPECT_NEAR(guarded.bounce_ratio(ao), guarded.formulas.bounce_ratio(ao), 1e-14);
   }
 }
 

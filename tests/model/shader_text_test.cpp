@@ -107,8 +107,8 @@ TEST(ShaderText, EveryModelCompilesAsGlslAndHlsl) {
 // A fit may bring any constant of either sign: "--" would be another operator.
 TEST(ShaderText, NegativeConstantsAreNoOperators) {
   GuardedModel model = kPublished;
-  model.published.b = -0.815;
-  model.published.k = -0.25;
+  model.formulas.b = -0.815;
+  model.formulas.k = -0.25;
   for (const Language language : {Language::kGlsl, Language::kHlsl, Language::kCpp})
     EXPECT_EQ(shader_text(model, language, {}).find("--"), std::string::npos);
 }
@@ -116,6 +116,19 @@ TEST(ShaderText, NegativeConstantsAreNoOperators) {
 TEST(ShaderText, OriginStaysInsideItsComments) {
   const std::string text = shader_text(kBounded, Language::kGlsl, {"a\nfloat b;\\", "c"});
   EXPECT_EQ(text.substr(0, text.find("// c\n")), "// a/float b;/\n");
+}
+
+// Whoever pastes the text owes nothing, and the text says so itself.
+TEST(ShaderText, HeadSaysThatItIsFreeOfConditions) {
+  for (const Language language : {Language::kGlsl, Language::kHlsl, Language::kCpp})
+    for (const ShaderModel& model : {ShaderModel(kBounded), ShaderModel(kPublished)}) {
+      const std::string text = shader_text(model, language, {"a test"});
+      EXPECT_EQ(
+          text.find(
+              "// a test\n// SPDX-License-Identifier: MIT-0. Anyone may use this text without conditions.\n"),
+          0U)
+          << text;
+    }
 }
 
 TEST(ShaderText, NothingIsLeftToReplace) {
