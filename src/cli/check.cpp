@@ -28,8 +28,10 @@ struct CheckOptions {
 // The bake's map, read again, and the bake measured against it.
 RefereeCheck ask_referee(const BakeFile& file, const CheckOptions& options) {
   const BakeMap map = load_bake_map(map_options_from(file.provenance, options.file));
-  return with_file_context(options.file,
-                           [&] { return check_against_referee(map.surface, file.bake, options.judge); });
+  return with_file_context(options.file, [&] {
+    return check_against_referee(map.surface, {file.bake.visible_fraction, file.bake.irradiance},
+                                 options.judge);
+  });
 }
 
 int run_with_referee(const CheckOptions& options) {

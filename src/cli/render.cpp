@@ -6,8 +6,9 @@
 
 #include "cli/commands.h"
 #include "cli/render_options.h"
-#include "cli/render_wall.h"
+#include "cli/render_scene.h"
 #include "cli/result_folder.h"
+#include "core/constants.h"
 #include "core/parallel.h"
 #include "io/bake_file.h"
 #include "io/output_file.h"
@@ -38,6 +39,25 @@ void remove_earlier_pictures(const fs::path& folder) {
   }
 }
 
+nlohmann::ordered_json json_from_error(const PictureError& error) {
+  return {{"bias_over_mean", error.bias}, {"rms_over_mean", error.rms}, {"largest_over_mean", error.largest}};
+}
+
+// Says how the scene was lit, and how well that is known.
+nlohmann::ordered_json json_from_light(const RenderedScene& rendered) {
+  nlohmann::ordered_json light;
+  if (!rendered.no_map.empty()) light["map"] = rendered.no_map;
+  if (!rendered.no_model.empty()) light["model"] = rendered.no_model;
+  if (rendered.projection_error)
+    light["sky_projected_against_traced"] = json_from_error(*rendered.projection_error);
+  if (const std::optional<Relit>& truth = rendered.scene.truth) {
+    light["bounces"] = truth->bounces.size() - 1;
+    light["rest_of_series_mean_over_pi"] = truth->mean_rest / kPi;
+    light["rest_of_series_largest_over_pi"] = truth->largest_rest / kPi;
+  }
+  return light;
+}
+
 nlohmann::ordered_json errors_of(const SceneImages& shaded) {
   nlohmann::ordered_json errors = nlohmann::ordered_json::object();
   if (shaded.truth.empty()) return errors;
@@ -47,15 +67,15 @@ nlohmann::ordered_json errors_of(const SceneImages& shaded) {
   return errors;
 }
 
-void draw(const RenderOptions& options, const ShadedScene& wall, const SceneImages& shaded,
+void draw(const RenderOptions& options, const ShadedScene& scene, const SceneImages& shaded,
           Gallery& gallery) {
-  if (options.wants("light")) add_triptych(wall, shaded, gallery);
+  if (options.wants("light")) add_triptych(scene, shaded, gallery);
   if (options.wants("differences")) add_differences(shaded, gallery);
-  if (options.wants("bounces")) add_bounces(wall, options.picture, gallery);
-  if (options.wants("saturation")) add_saturation(wall, shaded, gallery);
-  if (options.wants("planes")) add_planes(wall, gallery);
-  if (options.wants("estimators")) add_estimators(wall, gallery);
-  if (options.wants("views")) add_views(wall, shaded, options.picture, gallery);
+  if (options.wants("bounces")) add_bounces(scene, options.picture, gallery);
+  if (options.wants("saturation")) add_saturation(scene, shaded, gallery);
+  if (options.wants("planes")) add_planes(scene, gallery);
+  if (options.wants("estimators")) add_estimators(scene, gallery);
+  if (options.wants("views")) add_views(scene, shaded, options.picture, gallery);
   if (!has_font()) gallery.report_missing("captions", "no font was found, expected fonts-dejavu-core");
 }
 
@@ -79,13 +99,13 @@ int run_render(RenderOptions& options) {
   check_output_path(options.folder / kRecord);
 
   const RenderedScene rendered = shade_scene(options, std::move(file));
-  const SceneImages shaded = make_scene_images(rendered.wall, options.picture);
+  const SceneImages shaded = make_scene_images(rendered.scene, options.picture);
   remove_earlier_pictures(options.folder);
   Gallery gallery(options.folder, provenance);
-  draw(options, rendered.wall, shaded, gallery);
+  draw(options, rendered.scene, shaded, gallery);
 
   nlohmann::ordered_json json = provenance;
-  json["light"] = rendered.light;
+  json["light"] = json_from_light(rendered);
   json["exposure_ev"] = shaded.exposure_ev;
   json["errors"] = errors_of(shaded);
   json.update(gallery.json());

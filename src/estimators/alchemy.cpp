@@ -16,10 +16,10 @@ double obscurance_at(const GeometryBuffer& buffer, int x, int y, const AlchemyOp
   if (!here) return 0;
   const double c = options.falloff_start * radius_m;
   const double radius_pixels = radius_m * buffer.scale_at(here->depth_m);
-  const double turn = spiral_turn(x, y);
+  const double rotation = spiral_rotation(x, y);
   double sum = 0;
   for (int i = 0; i < options.taps; ++i) {
-    const glm::dvec2 tap = radius_pixels * spiral_tap(i, options.taps, turn);
+    const glm::dvec2 tap = radius_pixels * spiral_tap(i, options.taps, rotation);
     const auto there =
         buffer.read(x + static_cast<int>(std::lround(tap.x)), y + static_cast<int>(std::lround(tap.y)));
     if (!there) continue;
@@ -32,33 +32,33 @@ double obscurance_at(const GeometryBuffer& buffer, int x, int y, const AlchemyOp
   return 2 * kPi * c / options.taps * sum;
 }
 
-// Every texel takes the AO of the pixel that shows it.
-void bring_to_texels(const Surface& surface, const CameraView& view, const GeometryBuffer& buffer,
-                     const Grid<float>& image, Estimate& estimate) {
+// Copies to every texel the AO of the pixel that shows it.
+void copy_to_texels(const Surface& surface, const CameraView& view, const GeometryBuffer& buffer,
+                    const Grid<float>& image, Estimate& estimate) {
   const double t = surface.texel_size_m;
   for (int y = 0; y < surface.height(); ++y) {
     for (int x = 0; x < surface.width(); ++x) {
       const glm::dvec3 at = view.project({(x + 0.5) * t, (y + 0.5) * t, surface.heights_m(x, y)});
       const int column = static_cast<int>(std::floor(at.x)), row = static_cast<int>(std::floor(at.y));
       const auto shown = column >= 0 && row >= 0 ? buffer.read(column, row) : std::nullopt;
-      // Two pixels or texels of slack: the pixel's centre shows another point of the same slope.
+      // Two pixels or texels of slack: the centre of the pixel shows another point of the same slope.
       const double slack_m = 2 * std::max(t, 1 / buffer.scale_at(at.z));
-      const bool seen = shown && at.z <= shown->depth_m + slack_m;
-      estimate.ao(x, y) = seen ? image(column, row) : 1.0f;
-      estimate.known(x, y) = seen;
+      const bool shows_texel = shown && at.z <= shown->depth_m + slack_m;
+      estimate.ao(x, y) = shows_texel ? image(column, row) : 1.0f;
+      estimate.known(x, y) = shows_texel;
     }
   }
 }
 
 }  // namespace
 
-glm::dvec2 spiral_tap(int i, int taps, double turn) {
+glm::dvec2 spiral_tap(int i, int taps, double rotation) {
   const double along = (i + 0.5) / taps;
-  const double angle = 2 * kPi * along * (7.0 * taps / 9) + turn;
+  const double angle = 2 * kPi * along * (7.0 * taps / 9) + rotation;
   return along * glm::dvec2(std::cos(angle), std::sin(angle));
 }
 
-double spiral_turn(int x, int y) {
+double spiral_rotation(int x, int y) {
   const int64_t wide_x = x, wide_y = y;
   return static_cast<double>(((30 * wide_x) ^ wide_y) + 10 * wide_x * wide_y);
 }
@@ -114,7 +114,7 @@ Estimate estimate_alchemy(const Surface& surface, const AlchemyOptions& options)
   estimate.ao = Grid<float>(surface.width(), surface.height());
   estimate.known = Grid<uint8_t>(surface.width(), surface.height());
   const AlchemyImages images = alchemy_images(buffer, options, radius_m);
-  bring_to_texels(surface, camera_view(surface, options.camera), buffer, images.blurred, estimate);
+  copy_to_texels(surface, camera_view(surface, options.camera), buffer, images.blurred, estimate);
   estimate.work = buffer.pixels.size() * static_cast<uint64_t>(options.taps);
   return estimate;
 }

@@ -16,7 +16,7 @@ namespace hemibake {
 
 enum class Projection { kOrthographic, kPerspective };
 
-// Which passes of the blur are run.
+// Passes of the blur that are run.
 enum class BlurPasses { kNone, kRows, kBoth };
 
 struct AlchemyOptions {
@@ -33,27 +33,29 @@ struct AlchemyOptions {
   BlurOptions blur_options;
 };
 
-// Tap i of n: where it is from the pixel, in units of the projected radius R. turn: the pixel's own angle.
-// α = (i + ½)/n, at the angle 2πα·7n/9 + turn: seven turns for every nine taps.
-glm::dvec2 spiral_tap(int i, int taps, double turn);
+// Returns the offset of tap i of n from its pixel, in units of the projected radius R: at distance α = (i +
+// ½)/n and angle 2πα·7n/9 + rotation, seven turns of the spiral for every nine taps. rotation: of the pixel's
+// spiral, radians.
+glm::dvec2 spiral_tap(int i, int taps, double rotation);
 
-// The pixel's own angle, radians: (30 x ^ y) + 10 x y.
-double spiral_turn(int x, int y);
+// Returns the rotation of a pixel's spiral, radians: (30 x ^ y) + 10 x y.
+double spiral_rotation(int x, int y);
 
-// S of every pixel; 0 where no surface is. Unbounded above.
+// Returns S of every pixel, 0..; 0 without a surface.
 Grid<double> alchemy_obscurance(const GeometryBuffer& buffer, const AlchemyOptions& options, double radius_m);
 
-// AO per pixel: before the blur, after its pass along the rows, and after its pass along the columns. A pass
-// that is not run leaves the picture as it was.
+// AO per pixel before the blur, after its pass along the rows and after both. A pass that is not run copies
+// its input.
 struct AlchemyImages {
   Grid<float> raw, blurred_rows, blurred;
 };
+// Makes AO of every pixel.
 AlchemyImages alchemy_images(const GeometryBuffer& buffer, const AlchemyOptions& options, double radius_m);
 
-// The radius that options.radius_m = 0 stands for.
+// Returns the radius of the options, or their default for the surface.
 double alchemy_radius_m(const Surface& surface, const AlchemyOptions& options);
 
-// The picture's AO brought back to the texels. In perspective a texel that the camera does not see is not
+// Estimates AO per texel by the pixel that shows it. Texels that a perspective camera does not see are not
 // known. Obscurance is cosine-weighted, but fades with distance: it is no unbiased E₀/π.
 Estimate estimate_alchemy(const Surface& surface, const AlchemyOptions& options);
 

@@ -1,6 +1,6 @@
-// A blur that keeps edges of the geometry: spatial Gaussian times a range kernel of normal and depth,
-// (N_i·N)₊ exp(−(d_i − d)²/2s), run along the rows and then along the columns although it is not separable
-// (as the notes of CS562 do; Tomasi & Manduchi 1998 for the filter).
+// Blurs AO across pixels but not across edges of the geometry: spatial Gaussian times a range kernel of
+// normal and depth, (N_i·N)₊ exp(−(d_i − d)²/2s), run along the rows and then along the columns although it
+// is not separable (as the notes of CS562 do; Tomasi & Manduchi 1998 for the filter).
 #pragma once
 
 #include "core/grid.h"
@@ -15,7 +15,8 @@ struct BlurOptions {
 
 enum class BlurAxis { kRows, kColumns };
 
-// values: one per pixel. depth_variance_m2 above 0. Pixels without a surface keep their value and give none.
+// Blurs along one axis. Pixels without a surface keep their value and give none.
+// values: one per pixel. depth_variance_m2: above 0.
 Grid<float> bilateral_blur_pass(const Grid<float>& values, const GeometryBuffer& buffer, int radius_pixels,
                                 double depth_variance_m2, BlurAxis axis);
 

@@ -74,7 +74,7 @@ std::vector<Grid<float>> disk_light(const Surface& surface, const Grid<float>& d
   const DiskTree tree = make_grid_tree(disks, surface.width(), surface.height());
   const DiskReach reach = make_disk_reach(surface, options.opening_ratio, options.radius_m);
 
-  // Σ F · values over the disks that turn `side` to each receiver.
+  // Returns Σ F · values of each receiver over the disks whose `side` faces it.
   Progress progress(
       "disk light",
       disks.size() * static_cast<uint64_t>(light.bounces) * static_cast<uint64_t>(light.shadow_passes + 1),

@@ -1,5 +1,5 @@
-// Ambient occlusion and indirect light between disks at the vertices of the surface: M. Bunnell, "Dynamic
-// Ambient Occlusion and Indirect Lighting", GPU Gems 2, ch. 14, 2005.
+// Estimates ambient occlusion and indirect light between disks at the vertices of the surface: M. Bunnell,
+// "Dynamic Ambient Occlusion and Indirect Lighting", GPU Gems 2, ch. 14, 2005.
 //
 // Every texel is an element: its position, the average of the normals of the facets that share it, and their
 // area. The first pass adds up the shadows of all others and is too dark where shadows overlap; every further
@@ -16,23 +16,22 @@
 
 namespace hemibake {
 
-// What a vertex has of the area of its facets: a third of each (so that all add up to the surface; GPU Gems
-// 2), or their average.
+// Area of a vertex: a third of each of its facets (so that all add up to the surface; GPU Gems 2), or their
+// average.
 enum class VertexArea { kThirdOfEach, kAverage };
 
 struct DiskOptions {
-  int passes = 2;  // 1..
-  double opening_ratio =
-      0.2;              // size over distance below which a node stands for its children; 0: brute force
-  double radius_m = 0;  // farther disks do not count; 0: see make_disk_reach
+  int passes = 2;              // 1..
+  double opening_ratio = 0.2;  // a node stands for its children below this size over distance; 0: brute force
+  double radius_m = 0;         // farther disks do not count; 0: see make_disk_reach
   OccluderSide side = OccluderSide::kFront;
   VertexArea vertex_area = VertexArea::kThirdOfEach;
 };
 
-// One disk per texel, in texels.
+// Returns one disk per texel, in texels.
 std::vector<Disk> vertex_disks(const Surface& surface, VertexArea vertex_area);
 
-// AO about uniform. Bent normals: the normal less every shadow's direction times its size.
+// Estimates AO, about uniform. Bent normals: the normal less every shadow's direction times its size.
 Estimate estimate_disk(const Surface& surface, const DiskOptions& options);
 
 struct DiskLightOptions {
@@ -40,11 +39,11 @@ struct DiskLightOptions {
   int shadow_passes = 1;  // 0: light goes through everything
 };
 
-// E_0 … E_bounces at albedo 1 per texel, by disk-to-disk radiance transfer, comparable with the bake's E_b:
-// E_0 is given (0..π), E_{b+1} = Σ F E_b over the disks whose front faces the receiver, F of
-// disk_form_factor. A shadow pass then takes away what the disks in between have caught: Σ F L over those
-// whose back faces the receiver, L the light of the pass before; never below 0. The sums are not bound by π:
-// overlapping disks send more than there is.
+// Estimates E_0 … E_bounces at albedo 1 per texel by disk-to-disk radiance transfer, comparable with the
+// bake's: E_{b+1} = Σ F E_b over the disks whose front faces the receiver, F of disk_form_factor. A shadow
+// pass then subtracts the light that disks in between catch: Σ F L over those whose back faces the receiver,
+// L the light of the pass before; never below 0. The sums are not bounded by π: overlapping disks send more
+// light than there is. direct_irradiance: E_0 per texel, 0..π.
 std::vector<Grid<float>> disk_light(const Surface& surface, const Grid<float>& direct_irradiance,
                                     const DiskOptions& disks, const DiskLightOptions& light);
 

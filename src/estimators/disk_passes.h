@@ -1,4 +1,4 @@
-// What the disk estimators share: a sum of shadows over a tree, and passes of it over all receivers.
+// Sums shadows over a tree of disks, in passes over all receivers: shared by the disk estimators.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace hemibake {
 
-// The shadow over one receiver, disk by disk.
+// Adds up the shadow over one receiver, disk by disk.
 struct ShadowSum {
   double total = 0;
   glm::dvec3 direction{0};  // Σ shadow · unit direction to the disk
@@ -29,7 +29,8 @@ struct ShadowSum {
   }
 };
 
-// body(receiver) → nodes visited, for every receiver in parallel; the sum of what it returns.
+// Calls body(receiver) for every receiver in parallel. Returns the sum of the nodes visited, which body
+// returns.
 template <class Body>
 uint64_t for_each_receiver(size_t count, Progress& progress, const Body& body) {
   constexpr size_t kGrain = 256;

@@ -9,8 +9,8 @@
 namespace hemibake {
 namespace {
 
-// A thousandth of a texel, or of the height range where that is lower: the start of the truth's rays
-// (FACTS.md §4).
+// Returns the height at which receivers start, as the rays of the truth do: a thousandth of a texel, or of
+// the height range if that is lower.
 double receiver_lift_texels(const Surface& surface) {
   const double range = height_range_m(surface) / surface.texel_size_m;
   return 1e-3 * (range > 0 ? std::min(1.0, range) : 1.0);
@@ -49,7 +49,7 @@ struct RobustPasses {
     return std::max(0.0, options.side == OccluderSide::kFront ? factor : -factor);
   }
 
-  // Accessibility of every facet from that of the pass before.
+  // Updates the accessibility of every facet from that of the pass before. Returns the nodes visited.
   uint64_t pass_over_facets(std::vector<double>& accessibility, Progress& progress) const {
     const std::vector<double> emitters = values_of_nodes(tree, accessibility);
     return for_each_receiver(disks.size(), progress, [&](size_t facet) {

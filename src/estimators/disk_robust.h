@@ -1,5 +1,5 @@
-// Ambient occlusion between disks on the facets of the surface, the last pass with exact polygons: J.
-// Hoberock, Y. Jia, "High-Quality Ambient Occlusion", GPU Gems 3, ch. 12, 2007.
+// Estimates ambient occlusion between disks on the facets, the last pass with exact polygons: J. Hoberock, Y.
+// Jia, "High-Quality Ambient Occlusion", GPU Gems 3, ch. 12, 2007.
 //
 // All passes but the last find the accessibility of every facet from disk-to-disk form factors, an emitter
 // weighed by its accessibility in the pass before. The last finds that of every texel: nodes that stand for
@@ -26,10 +26,10 @@ struct DiskRobustOptions {
   double triangle_attenuation = 1;        // a_T: the last pass multiplies by accessibility^a_T; 0: by nothing
 };
 
-// One disk per facet, in texels, at its centroid.
+// Returns one disk per facet at its centroid, in texels.
 std::vector<Disk> facet_disks(const Surface& surface);
 
-// AO cosine-weighted. Bent normals as of estimate_disk.
+// Estimates cosine-weighted AO. Bent normals as of estimate_disk.
 Estimate estimate_disk_robust(const Surface& surface, const DiskRobustOptions& options);
 
 }  // namespace hemibake

@@ -10,14 +10,14 @@
 namespace hemibake {
 namespace {
 
-// Children of a node, one after another.
+// Calls each(child) for the children of a node.
 template <class Each>
 void for_each_child(const DiskTree& tree, size_t node, const Each& each) {
   for (size_t child = node + 1; child < tree[node].next; child = tree[child].next) each(child);
 }
 
-// Closes an inner node whose subtree has just been appended.
-void close_node(DiskTree& tree, size_t node, bool weigh_by_area) {
+// Completes an inner node after its subtree was appended.
+void complete_node(DiskTree& tree, size_t node, bool weigh_by_area) {
   tree[node].next = static_cast<uint32_t>(tree.size());
   tree[node].element = kInnerNode;
   glm::dvec3 position(0), normal(0);
@@ -43,7 +43,7 @@ struct GridTreeBuilder {
   int width;
   DiskTree tree;
 
-  // Columns x0..x1 and rows y0..y1, ends excluded, not empty.
+  // Appends the subtree of columns x0..x1 and rows y0..y1, ends excluded, not empty.
   void append(int x0, int y0, int x1, int y1) {
     if (x1 - x0 == 1 && y1 - y0 == 1) {
       const uint32_t element =
@@ -58,7 +58,7 @@ struct GridTreeBuilder {
       for (size_t column = 0; column < 2; ++column)
         if (xs[column] < xs[column + 1] && ys[row] < ys[row + 1])
           append(xs[column], ys[row], xs[column + 1], ys[row + 1]);
-    close_node(tree, node, false);
+    complete_node(tree, node, false);
   }
 };
 
@@ -83,7 +83,7 @@ struct AxisTreeBuilder {
     });
     append(begin, middle);
     append(middle, end);
-    close_node(tree, node, true);
+    complete_node(tree, node, true);
   }
 
   std::vector<uint32_t>::iterator at(size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); }
@@ -124,7 +124,7 @@ DiskTree make_axis_tree(const std::vector<Disk>& disks) {
 
 std::vector<double> values_of_nodes(const DiskTree& tree, const std::vector<double>& values_of_elements) {
   std::vector<double> values(tree.size());
-  // Children stand behind their parents.
+  // Children follow their parents.
   for (size_t node = tree.size(); node-- > 0;) {
     if (tree[node].element != kInnerNode) {
       values[node] = values_of_elements[tree[node].element];

@@ -1,10 +1,9 @@
 // A tree of oriented disks in one array, child first: a node's first child follows it, and `next` leads past
-// its whole subtree, so that a walk needs neither recursion nor a stack (Bunnell, GPU Gems 2, ch. 14).
+// its whole subtree, so that traversal needs neither recursion nor a stack (Bunnell, GPU Gems 2, ch. 14).
 //
-// Lengths are in texels. A wrapping map is walked copy by copy: every copy of the tree that reaches within
-// `radius` (horizontally) of the receiver, and of it only what lies within. On a map with height range H,
-// what is farther off lies within atan(H/radius) of the horizon: at most H/radius of α and (H/radius)² of
-// E₀/π for a level receiver.
+// Lengths are in texels. A wrapping map is traversed copy by copy: the disks within `radius` (horizontally)
+// of the receiver of every copy of the tree. On a map with height range H, farther disks lie within
+// atan(H/radius) of the horizon: at most H/radius of α and (H/radius)² of E₀/π for a level receiver.
 #pragma once
 
 #include <cmath>
@@ -35,36 +34,37 @@ inline constexpr uint32_t kInnerNode = std::numeric_limits<uint32_t>::max();
 
 using DiskTree = std::vector<DiskNode>;
 
-// One disk per texel, row by row: blocks of texels halved both ways. Position and normal of a node are the
-// plain averages of its children, its area their sum (as published).
+// Builds a tree of blocks of texels halved both ways. Position and normal of a node are the plain averages of
+// its children, its area their sum (as published). disks: one per texel, row by row.
 DiskTree make_grid_tree(const std::vector<Disk>& disks, int width, int height);
 
-// Any disks: halved at the median of the axis along which they spread most. Position and normal of a node are
-// averages weighted by area (Hoberock & Jia, GPU Gems 3, ch. 12).
+// Builds a tree of any disks, halved at the median of the axis along which they spread most. Position and
+// normal of a node are averages weighted by area (Hoberock & Jia, GPU Gems 3, ch. 12).
 DiskTree make_axis_tree(const std::vector<Disk>& disks);
 
-// Values of the elements averaged up the tree by area: one per node.
+// Averages values up the tree by area. Returns one per node. values_of_elements: one per disk.
 std::vector<double> values_of_nodes(const DiskTree& tree, const std::vector<double>& values_of_elements);
 
 struct DiskReach {
-  // A node stands for its children where the root of its area over π is below this many times its distance;
-  // 0: never.
+  // A node stands for its children if the root of its area over π is below this many times its distance; 0:
+  // never.
   double opening_ratio;
   double radius_texels;  // infinite only with open edges
   glm::ivec2 period{0};  // width and height of a wrapping map; 0 with open edges
 };
 
-// radius_m 0: far_radius_m on a wrapping map, no limit on an open one.
+// Makes a reach in texels. radius_m: 0..; 0: far_radius_m on a wrapping map, no limit on an open one.
 DiskReach make_disk_reach(const Surface& surface, double opening_ratio, double radius_m);
 
 // Copies of the map from first to last, in map lengths.
 struct CopyRange {
   glm::ivec2 first{0}, last{0};
 };
+// Returns the copies of the map within reach of a receiver.
 CopyRange copies_in_reach(const DiskReach& reach, const glm::dvec3& receiver);
 
-// visit(node index, offset from the receiver to the disk, whether in the receiver's own copy) for every disk
-// that counts. Returns the number of nodes looked at.
+// Calls visit(node index, offset from the receiver to the disk, whether in the receiver's own copy) for every
+// disk that counts. Returns the number of nodes visited.
 template <class Visit>
 uint64_t visit_disks(const DiskTree& tree, const DiskReach& reach, const glm::dvec3& receiver,
                      const Visit& visit) {

@@ -1,4 +1,4 @@
-// What an estimator answers.
+// The result of an estimator.
 #pragma once
 
 #include <algorithm>
@@ -10,20 +10,20 @@
 
 namespace hemibake {
 
-// Which truth an AO stands for: the uniform visible fraction α, or the cosine-weighted one, E₀/π.
+// The truth that an AO stands for: the uniform visible fraction α, or the cosine-weighted one, E₀/π.
 enum class AoKind { kUniform, kCosine };
 
 struct Estimate {
   Grid<float> ao;  // per texel, 0..1, 1 = open
   AoKind kind = AoKind::kUniform;
-  Grid<glm::vec3> bent_normals;  // unit, per texel; empty where the method has none
-  Grid<uint8_t> known;  // 0 where the method has no answer (AO is 1 there); empty: it has one everywhere
-  uint64_t work = 0;    // tree nodes visited, taps or height samples read, over all passes
+  Grid<glm::vec3> bent_normals;  // unit, per texel; empty if the method has none
+  Grid<uint8_t> known;           // 0: the method does not know (AO is 1 there); empty: known everywhere
+  uint64_t work = 0;             // tree nodes visited, taps or height samples read, over all passes
 };
 
-// How far a method looks where it is not told, metres: eight height ranges, at most four times the longer
-// side. What is farther off on an endless map lies within atan(1/8) of the horizon: at most 1/8 of α and 1/64
-// of E₀/π for a level receiver.
+// Returns the default radius of the estimators: eight height ranges, at most four times the longer side.
+// Farther heights of an endless map lie within atan(1/8) of the horizon: at most 1/8 of α and 1/64 of E₀/π
+// for a level receiver.
 inline double far_radius_m(const Surface& surface) {
   const double longer_side_m = surface.texel_size_m * std::max(surface.width(), surface.height());
   return std::min(8 * height_range_m(surface), 4 * longer_side_m);

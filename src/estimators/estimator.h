@@ -1,4 +1,4 @@
-// Approximate AO: every method behind one signature, in one table. None of them traces a ray.
+// Lists the estimators of AO: one signature, one table. None of them traces a ray.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace hemibake {
 
-// Each estimator reads its own.
+// Options of all estimators; each reads its own.
 struct EstimatorOptions {
   DiskOptions disk;
   DiskRobustOptions disk_robust;
@@ -23,13 +23,13 @@ struct EstimatorOptions {
 struct Estimator {
   const char* name;
   const char* description;  // one line
-  // The same bytes at any thread count. Throws Interrupted.
+  // Estimates AO. The same bytes at any thread count. Throws Interrupted.
   Estimate (*estimate)(const Surface& surface, const EstimatorOptions& options);
 };
 
 std::span<const Estimator> estimators();
 
-// nullptr where there is none of that name.
+// Returns the estimator of a name, or nullptr.
 const Estimator* find_estimator(std::string_view name);
 
 }  // namespace hemibake

@@ -1,4 +1,4 @@
-// How much of a receiver's hemisphere a disk or a polygon covers.
+// Form factors of disks and polygons.
 //
 // [1] Bunnell, "Dynamic Ambient Occlusion and Indirect Lighting", GPU Gems 2, ch. 14, 2005.
 // [2] Hoberock, Jia, "High-Quality Ambient Occlusion", GPU Gems 3, ch. 12, 2007.
@@ -18,12 +18,12 @@
 
 namespace hemibake {
 
-// Which side of a disk occludes. In [1] shadows are cast from the back, which needs a closed mesh: what
-// enters a solid leaves it again. A height map has no bottom, so here the front is the default: the side that
-// faces the receiver.
+// The side of a disk that occludes. In [1] shadows are cast from the back, which needs a closed mesh: light
+// that enters a solid leaves it again. A height map has no bottom, so the default is the front, which faces
+// the receiver.
 enum class OccluderSide { kFront, kBack };
 
-// Cosine between the side that occludes and the direction to the receiver, clamped to 0..1.
+// Returns the cosine between the side that occludes and the direction to the receiver, clamped to 0..1.
 inline double occluder_cosine(const glm::dvec3& disk_normal, const glm::dvec3& direction_to_disk,
                               OccluderSide side) {
   const double toward_back = glm::dot(disk_normal, direction_to_disk);
@@ -34,8 +34,8 @@ inline double occluder_cosine(const glm::dvec3& disk_normal, const glm::dvec3& d
 // uniform.
 inline constexpr double kReceiverCosineFactor = 4;
 
-// Share of the hemisphere that a disk covers, about uniformly weighted: (1 − d/√(A/π + d²)) s(cos θ_E) s(4
-// cos θ_R), s clamping to 0..1 ([1], SolidAngle() of its shader). 0..1.
+// Returns the share of the hemisphere that a disk covers, about uniformly weighted, 0..1:
+// (1 − d/√(A/π + d²)) s(cos θ_E) s(4 cos θ_R), s clamping to 0..1 ([1], SolidAngle() of its shader).
 inline double disk_shadow(const glm::dvec3& to_disk, const glm::dvec3& disk_normal, double area_over_pi,
                           const glm::dvec3& receiver_normal, OccluderSide side) {
   const double distance2 = glm::dot(to_disk, to_disk);
@@ -44,7 +44,7 @@ inline double disk_shadow(const glm::dvec3& to_disk, const glm::dvec3& disk_norm
          std::clamp(kReceiverCosineFactor * glm::dot(receiver_normal, direction), 0.0, 1.0);
 }
 
-// Form factor of a disk, cosine-weighted: (A/π)/(A/π + d²) s(cos θ_E) s(cos θ_R) ([1] eq. 14-2, [2]). 0..1.
+// Returns the form factor of a disk, 0..1: (A/π)/(A/π + d²) s(cos θ_E) s(cos θ_R) ([1] eq. 14-2, [2]).
 inline double disk_form_factor(const glm::dvec3& to_disk, const glm::dvec3& disk_normal, double area_over_pi,
                                const glm::dvec3& receiver_normal, OccluderSide side) {
   const double distance2 = glm::dot(to_disk, to_disk);
@@ -60,13 +60,12 @@ struct ClippedTriangle {
   std::span<const glm::dvec3> corners() const { return {corner.data(), static_cast<size_t>(count)}; }
 };
 
-// The part of a triangle above the plane through the origin with this normal, in the triangle's order.
+// Clips a triangle by the plane through the origin with this normal. Returns the part above, in its order.
 ClippedTriangle clip_to_horizon(const std::array<glm::dvec3, 3>& triangle, const glm::dvec3& normal);
 
-// Exact form factor of a polygon that lies above the receiver's plane: (1/2π) Σ θ_i (n·n_i), θ_i the angle an
-// edge subtends and n_i the normal of its plane with the receiver (Lambert 1760; [2]). Corners relative to
-// the receiver. Positive where the polygon's right-handed normal points towards the receiver, negative where
-// away. −1..1.
+// Returns the exact form factor of a polygon above the receiver's plane, −1..1: (1/2π) Σ θ_i (n·n_i), θ_i the
+// angle an edge subtends and n_i the normal of its plane with the receiver (Lambert 1760; [2]). Positive if
+// the polygon's right-handed normal points towards the receiver. corners: relative to the receiver.
 double polygon_form_factor(std::span<const glm::dvec3> corners, const glm::dvec3& receiver_normal);
 
 }  // namespace hemibake

@@ -11,7 +11,7 @@
 namespace hemibake {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::infinity();
+constexpr double kNoSurface = std::numeric_limits<double>::infinity();
 
 struct Corner {
   glm::dvec3 position_m;
@@ -23,10 +23,11 @@ double edge_function(const glm::dvec3& a, const glm::dvec3& b, double x, double 
   return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
 }
 
-// Pixels whose centres lie between low and high.
+// Pixels from first to last.
 struct PixelRange {
   int first, last;
 };
+// Returns the pixels whose centres lie between low and high.
 PixelRange pixels_between(double low, double high, int count) {
   return {static_cast<int>(std::ceil(std::clamp(low - 0.5, 0.0, count * 1.0))),
           static_cast<int>(std::floor(std::clamp(high - 0.5, -1.0, count - 1.0)))};
@@ -66,7 +67,7 @@ std::optional<GeometryPixel> GeometryBuffer::read(int x, int y) const {
   if (outside && period_m.x == 0) return std::nullopt;
   const int inside_x = wrap_index(x, pixels.width), inside_y = wrap_index(y, pixels.height);
   GeometryPixel pixel = pixels(inside_x, inside_y);
-  if (pixel.depth_m == kNothing) return std::nullopt;
+  if (pixel.depth_m == kNoSurface) return std::nullopt;
   if (outside) {
     pixel.position_m.x += period_m.x * ((x - inside_x) / pixels.width);
     pixel.position_m.y += period_m.y * ((y - inside_y) / pixels.height);
@@ -119,7 +120,7 @@ GeometryBuffer perspective_buffer(const Surface& surface, const PerspectiveCamer
   GeometryBuffer buffer;
   buffer.perspective = true;
   buffer.pixels_per_metre = view.focal_pixels;
-  buffer.pixels = Grid<GeometryPixel>(side, side, {glm::dvec3(0), glm::dvec3(0, 0, 1), kNothing});
+  buffer.pixels = Grid<GeometryPixel>(side, side, {glm::dvec3(0), glm::dvec3(0, 0, 1), kNoSurface});
 
   const int copies = surface.edge == Edge::kWrap ? 1 : 0;
   const double t = surface.texel_size_m;

@@ -1,4 +1,4 @@
-// The picture a screen-space method works on: position, normal and depth of the surface in every pixel.
+// Renders position, normal and depth of the surface per pixel: the input of screen-space methods.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -22,17 +22,17 @@ struct GeometryBuffer {
   bool perspective = false;
   glm::dvec2 period_m{0};  // of a map that repeats beyond the borders of the picture; 0: nothing there
 
-  // Pixels a length of 1 m spans at this depth.
+  // Returns the pixels that a length of 1 m spans at this depth.
   double scale_at(double depth_m) const {
     return perspective ? pixels_per_metre / depth_m : pixels_per_metre;
   }
 
-  // The pixel x, y, on a repeating map also outside the picture; nullopt where no surface is.
+  // Returns the pixel x, y, of a repeating map also outside the picture; nullopt without a surface.
   std::optional<GeometryPixel> read(int x, int y) const;
 };
 
-// From straight above, a pixel per texel, exactly. The camera plane is camera_height_m above the highest
-// texel.
+// Renders the surface from straight above, exactly a pixel per texel. camera_height_m: of the camera plane
+// above the highest texel.
 GeometryBuffer orthographic_buffer(const Surface& surface, double camera_height_m);
 
 struct PerspectiveCamera {
@@ -41,19 +41,20 @@ struct PerspectiveCamera {
   int pixels = 0;                  // sides of the picture; 0: as many as the map's longer side has texels
 };
 
-// Where the camera stands so that the sphere around the map fills the picture.
+// A camera placed so that the sphere around the map fills the picture.
 struct CameraView {
   glm::dvec3 eye_m;
   glm::dvec3 right, down, forward;  // orthonormal
   double focal_pixels;
   double center_pixels;
 
-  // Pixel (centres at whole numbers and a half) and depth of a point.
+  // Returns pixel x, y (centres at whole numbers and a half) and depth of a point.
   glm::dvec3 project(const glm::dvec3& position_m) const;
 };
+// Places the camera.
 CameraView camera_view(const Surface& surface, const PerspectiveCamera& camera);
 
-// The nearest facet in every pixel; a wrapping map is drawn with its eight neighbours.
+// Renders the nearest facet in every pixel; a wrapping map is drawn with its eight neighbours.
 GeometryBuffer perspective_buffer(const Surface& surface, const PerspectiveCamera& camera);
 
 }  // namespace hemibake

@@ -14,10 +14,11 @@
 namespace hemibake {
 namespace {
 
-// A sample nearer than this shows the facet the texel stands on, whose slope it knows already.
+// Nearest sample: closer ones show only the facets at the texel itself.
 constexpr double kNearestSampleTexels = 0.5;
 
-// Height of the triangles at x, y (texels, centres at whole numbers), metres; nullopt beyond an open edge.
+// Returns the height of the triangles at x, y (texels, centres at whole numbers), or nullopt beyond an open
+// edge.
 std::optional<double> height_at(const Surface& surface, double x, double y) {
   const double cell_x = std::floor(x), cell_y = std::floor(y);
   const int w = surface.width(), h = surface.height();
@@ -35,12 +36,12 @@ std::optional<double> height_at(const Surface& surface, double x, double y) {
   return base + (1 - u) * (below - base) + (1 - v) * (right - base);
 }
 
-// What one texel gathers over its slices.
+// Sky of one texel, summed over its slices.
 struct SkySum {
   double uniform = 0, cosine = 0;
   glm::dvec3 direction{0};
 
-  // Sky between the angles `low` ≤ 0 and `high` ≥ 0 from the vertical, in the slice along `side`.
+  // Adds the sky between the angles `low` ≤ 0 and `high` ≥ 0 from the vertical, in the slice along `side`.
   void add_slice(const glm::dvec3& side, double projected_length, double gamma, double low, double high) {
     for (const double h : {low, high}) {
       uniform += 0.5 * (1 - std::cos(h));
@@ -53,13 +54,13 @@ struct SkySum {
   }
 };
 
-struct HorizonWalk {
+struct HorizonSearch {
   const Surface& surface;
   const HorizonOptions& options;
   double radius_texels;
-  double unseen_angle;  // of the horizon where nothing rises
+  double open_angle;  // from the vertical to the horizon if nothing rises
 
-  // Angle from the vertical of the highest of the samples at these distances along a direction.
+  // Returns the angle from the vertical to the highest of the samples at these distances along a direction.
   double horizon(int x, int y, const glm::dvec2& direction, const std::vector<double>& distances) const {
     const double here = surface.heights_m(x, y);
     double highest_slope = -HUGE_VAL;
@@ -68,8 +69,8 @@ struct HorizonWalk {
       if (!height) break;
       highest_slope = std::max(highest_slope, (*height - here) / (distance * surface.texel_size_m));
     }
-    if (highest_slope == -HUGE_VAL) return unseen_angle;
-    return std::min(unseen_angle, kPi / 2 - std::atan(highest_slope));
+    if (highest_slope == -HUGE_VAL) return open_angle;
+    return std::min(open_angle, kPi / 2 - std::atan(highest_slope));
   }
 
   std::vector<double> sample_distances(double shift) const {
@@ -83,7 +84,7 @@ struct HorizonWalk {
 
   SkySum sky_of(int x, int y) const {
     const uint64_t texel = surface.heights_m.index(x, y);
-    const double turn = options.jitter ? unit_interval(mix_bits(options.seed, texel, 0)) : 0.0;
+    const double rotation = options.jitter ? unit_interval(mix_bits(options.seed, texel, 0)) : 0.0;
     // 1 − u lies in (0, 1].
     const double shift = options.jitter ? 1 - unit_interval(mix_bits(options.seed, texel, 1)) : 1.0;
     const std::vector<double> distances = sample_distances(shift);
@@ -91,7 +92,7 @@ struct HorizonWalk {
     const int slices = options.azimuths / 2;
     SkySum sky;
     for (int slice = 0; slice < slices; ++slice) {
-      const double azimuth = kPi * (slice + turn) / slices;
+      const double azimuth = kPi * (slice + rotation) / slices;
       const glm::dvec2 along(std::cos(azimuth), std::sin(azimuth));
       const double run = normal.x * along.x + normal.y * along.y;
       const double gamma = std::atan2(run, normal.z);
@@ -109,8 +110,8 @@ struct HorizonWalk {
 
 Estimate estimate_horizon(const Surface& surface, const HorizonOptions& options) {
   const double radius_m = options.radius_m > 0 ? options.radius_m : far_radius_m(surface);
-  const HorizonWalk walk{surface, options, radius_m / surface.texel_size_m,
-                         surface.edge == Edge::kWrap ? kPi / 2 : kPi};
+  const HorizonSearch search{surface, options, radius_m / surface.texel_size_m,
+                             surface.edge == Edge::kWrap ? kPi / 2 : kPi};
   Estimate estimate;
   estimate.kind = options.kind;
   estimate.ao = Grid<float>(surface.width(), surface.height());
@@ -122,7 +123,7 @@ Estimate estimate_horizon(const Surface& surface, const HorizonOptions& options)
   parallel_for(static_cast<size_t>(surface.height()), 1, [&](size_t begin, size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < surface.width(); ++x) {
-        const SkySum sky = walk.sky_of(x, y);
+        const SkySum sky = search.sky_of(x, y);
         const double ao = options.kind == AoKind::kCosine ? sky.cosine : sky.uniform;
         estimate.ao(x, y) = static_cast<float>(std::clamp(ao, 0.0, 1.0));
         const double length = glm::length(sky.direction);

@@ -1,5 +1,5 @@
-// Horizon-based ambient occlusion as a shader does it: in a few vertical slices the highest of a few height
-// samples on either side bounds the sky, and each slice has a closed form.
+// Estimates horizon-based ambient occlusion as a shader does: in a few vertical slices the highest of a few
+// height samples on either side bounds the sky, and each slice has a closed form.
 //
 // L. Bavoil, M. Sainz, R. Dimitrov, "Image-Space Horizon-Based Ambient Occlusion", SIGGRAPH 2008 talks; J.
 // Jimenez, X. Wu, A. Pesce, A. Jarabo, "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016
@@ -21,12 +21,12 @@ struct HorizonOptions {
   double radius_m = 0;    // farther heights do not count; 0: far_radius_m
   double step_power = 2;  // sample k of n lies at radius · ((k + u)/n)^power: near ones are closer together
   AoKind kind = AoKind::kCosine;
-  bool jitter = true;  // turns the azimuths and shifts the samples of every texel at random, else u = 1
+  bool jitter = true;  // rotates the azimuths and shifts the samples of every texel at random, else u = 1
   uint64_t seed = 0;
 };
 
-// Heights are those of the surface's triangles. Beyond the radius an endless map fills all below the
-// horizontal, and beyond an open edge is nothing. Bent normals: the mean direction of the sky seen.
+// Estimates AO. Heights are those of the surface's triangles. Beyond the radius an endless map fills all
+// below the horizontal, and beyond an open edge is nothing. Bent normals: the mean direction of the sky seen.
 Estimate estimate_horizon(const Surface& surface, const HorizonOptions& options);
 
 }  // namespace hemibake

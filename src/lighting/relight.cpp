@@ -1,21 +1,17 @@
 #include "lighting/relight.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/common.hpp>
-#include <limits>
 
 #include "core/constants.h"
 #include "core/error.h"
-#include "core/parallel.h"
 #include "core/statistics.h"
-#include "surface/facets.h"
 #include "transport/series.h"
 
 namespace hemibake {
 namespace {
 
-// albedo: the largest on the wall, per channel.
+// Sums the bounces and their tail. albedo: the largest of the surface, per channel. most: bound of the total.
 void add_up(Relit& relit, const glm::vec3& albedo, double most) {
   const size_t count = relit.bounces.size();
   const Grid<glm::vec3>& first = relit.bounces[0];
@@ -63,13 +59,12 @@ Relit relight_constant(const std::vector<Grid<float>>& irradiance, const glm::ve
   return relit;
 }
 
-Relit relight_over_links(const LightTransport& seen, const ColoredLight& direct,
-                         const std::vector<glm::vec3>& patch_albedo, int bounces,
-                         std::optional<double> most) {
-  expect_equal(direct.texel_light.size(), seen.direct_over_pi.size(), "direct light of texels");
-  expect_equal(direct.patch_light.size(), size_t{seen.final_gather.columns}, "direct light of patches");
+Relit relight_by_transport(const LightTransport& transport, const ColoredLight& direct,
+                           const std::vector<glm::vec3>& patch_albedo, int bounces, double most) {
+  expect_equal(direct.texel_light.size(), transport.direct_over_pi.size(), "direct light of texels");
+  expect_equal(direct.patch_light.size(), size_t{transport.final_gather.columns}, "direct light of patches");
   expect_equal(patch_albedo.size(), direct.patch_light.size(), "albedo of patches");
-  const int width = seen.direct_over_pi.width, height = seen.direct_over_pi.height;
+  const int width = transport.direct_over_pi.width, height = transport.direct_over_pi.height;
   Relit relit;
   relit.bounces.assign(static_cast<size_t>(bounces) + 1, Grid<glm::vec3>(width, height));
   for (int c = 0; c < 3; ++c) {
@@ -78,34 +73,17 @@ Relit relight_over_links(const LightTransport& seen, const ColoredLight& direct,
     std::vector<double> at_texels(direct.texel_light.size());
     for (int b = 1; b <= bounces; ++b) {
       for (size_t j = 0; j < light.size(); ++j) light[j] *= static_cast<double>(patch_albedo[j][c]);
-      multiply(seen.final_gather, light, at_texels);
+      multiply(transport.final_gather, light, at_texels);
       store_channel(at_texels, c, relit.bounces[static_cast<size_t>(b)]);
       if (b == bounces) break;
-      multiply(seen.bounce_matrix(), light, next);
+      multiply(transport.bounce_matrix(), light, next);
       light.swap(next);
     }
   }
   glm::vec3 largest(0);
   for (const glm::vec3& albedo : patch_albedo) largest = glm::max(largest, albedo);
-  add_up(relit, largest, most.value_or(std::numeric_limits<double>::infinity()));
+  add_up(relit, largest, most);
   return relit;
-}
-
-std::vector<glm::vec3> albedo_of_patches(const Surface& surface, const Albedo& albedo,
-                                         const PatchSet& patches) {
-  std::vector<glm::vec3> values(patches.count, albedo.constant);
-  if (albedo.map.empty()) return values;
-  if (patches.kind == PatchKind::kTexels) return albedo.map.values;
-  for (uint32_t patch = 0; patch < patches.count; ++patch) {
-    const FacetNode node = facet_node(patches, patch);
-    const glm::dvec2 uv = node_uv(node.node);
-    const auto corners = facet_corners(surface, node.facet).texel;
-    const auto at = [&](int c) {
-      return glm::dvec3(albedo.map(corners[c].x % surface.width(), corners[c].y % surface.height()));
-    };
-    values[patch] = glm::vec3((1 - uv.x - uv.y) * at(0) + uv.x * at(1) + uv.y * at(2));
-  }
-  return values;
 }
 
 }  // namespace hemibake

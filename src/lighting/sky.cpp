@@ -1,9 +1,12 @@
 #include "lighting/sky.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/constants.h"
+#include "core/error.h"
 
 namespace hemibake {
 namespace {
@@ -15,7 +18,7 @@ const double kY2 = std::sqrt(15 / (4 * kPi));
 const double kY20 = std::sqrt(5 / (16 * kPi));
 const double kY22 = std::sqrt(15 / (16 * kPi));
 
-// A clamped cosine's share in each band.
+// Coefficients of the clamped cosine lobe in each band.
 constexpr std::array<double, kHarmonics> kCosineLobe = {
     kPi, 2 * kPi / 3, 2 * kPi / 3, 2 * kPi / 3, kPi / 4, kPi / 4, kPi / 4, kPi / 4, kPi / 4};
 
@@ -53,8 +56,8 @@ glm::dvec3 direction_of(double azimuth_rad, double elevation_rad) {
 }
 
 glm::dvec3 lat_long_radiance(const Grid<glm::vec3>& map, const glm::dvec3& d) {
-  const double turn = std::atan2(d.x, -d.y) / (2 * kPi);
-  const double column = turn * map.width - 0.5;
+  const double azimuth_share = std::atan2(d.x, -d.y) / (2 * kPi);
+  const double column = azimuth_share * map.width - 0.5;
   const double row = std::acos(std::clamp(d.z, -1.0, 1.0)) / kPi * map.height - 0.5;
   const double left = std::floor(column), upper = std::floor(row);
   const auto at = [&](int x, int y) {
@@ -86,6 +89,18 @@ Sky make_uniform_sky() {
   Sky sky;
   sky.uniform = true;
   sky.harmonics[0] = glm::dvec3(1 / kY0);
+  return sky;
+}
+
+Sky make_lat_long_sky(Grid<glm::vec3> lat_long) {
+  const auto width = static_cast<size_t>(lat_long.width);
+  for (size_t i = 0; i < lat_long.size(); ++i)
+    if (std::min({lat_long[i].x, lat_long[i].y, lat_long[i].z}) < 0)
+      throw InputError(
+          fmt::format("negative radiance at pixel {},{}, expected 0 or more", i % width, i / width));
+  Sky sky;
+  sky.harmonics = project_to_harmonics(lat_long);
+  sky.lat_long = std::move(lat_long);
   return sky;
 }
 

@@ -1,4 +1,4 @@
-// Skies: radiance by direction, RGB, and the irradiance of a receiver that nothing shades.
+// Skies and suns: radiance by direction, RGB, and the irradiance of an unshaded receiver.
 //
 // Directions are in the frame of the map: x right, y down the image rows, z up.
 //
@@ -22,42 +22,47 @@ namespace hemibake {
 
 inline constexpr int kHarmonics = 9;
 
-// Of radiance, see above.
+// Coefficients of radiance in the order above.
 using SkyHarmonics = std::array<glm::dvec3, kHarmonics>;
 
-// The nine basis functions in a direction (unit).
+// Returns the nine basis functions in a direction (unit).
 std::array<double, kHarmonics> harmonic_basis(const glm::dvec3& direction);
 
-// Negative where the nine coefficients ring.
+// Returns the radiance in a direction (unit): negative where the nine coefficients ring.
 glm::dvec3 harmonic_radiance(const SkyHarmonics& sky, const glm::dvec3& direction);
 
-// ∫ L max(0, n·ω) dω over the whole sphere of directions: Σ A_l L_lm Y_lm(n), A = π, 2π/3, π/4 (eq. 12).
+// Returns ∫ L max(0, n·ω) dω over the whole sphere: Σ A_l L_lm Y_lm(n), A = π, 2π/3, π/4 (eq. 12).
+// normal: unit.
 glm::dvec3 harmonic_irradiance(const SkyHarmonics& sky, const glm::dvec3& normal);
 
-// Azimuth and elevation as above, radians.
+// Returns the unit vector at an azimuth and elevation as above.
 glm::dvec3 direction_of(double azimuth_rad, double elevation_rad);
 
-// Bilinear between the centres of the pixels.
+// Returns the radiance of a map in a direction (unit), bilinear between the centres of its pixels.
 glm::dvec3 lat_long_radiance(const Grid<glm::vec3>& map, const glm::dvec3& direction);
 
-// Coefficients of the map: every pixel's centre, weighed by its exact solid angle.
+// Projects a map to nine coefficients: every pixel's centre, weighed by its exact solid angle.
 SkyHarmonics project_to_harmonics(const Grid<glm::vec3>& map);
 
-// The sky of a picture.
+// A sky lights unshaded receivers by its coefficients, and the ground truth by its map if it has one.
 struct Sky {
-  SkyHarmonics harmonics{};  // what an unshaded receiver is lit by
-  Grid<glm::vec3> lat_long;  // what the ground truth is lit by; empty: by the harmonics
+  SkyHarmonics harmonics{};
+  Grid<glm::vec3> lat_long;  // empty: by the coefficients too
   bool uniform = false;      // radiance 1 everywhere
 
   glm::dvec3 radiance(const glm::dvec3& direction) const {
     return lat_long.empty() ? harmonic_radiance(harmonics, direction)
                             : lat_long_radiance(lat_long, direction);
   }
-  // Over all directions.
+  // Returns the mean over all directions.
   glm::dvec3 mean_radiance() const;
 };
 
+// Makes a sky of radiance 1 everywhere.
 Sky make_uniform_sky();
+
+// Makes a sky of a latitude-longitude map and its projection. Throws InputError for negative radiance.
+Sky make_lat_long_sky(Grid<glm::vec3> lat_long);
 
 // Light from one direction.
 struct Sun {

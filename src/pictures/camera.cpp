@@ -103,7 +103,7 @@ View trace_view(const Surface& surface, const CameraOptions& options) {
               glm::normalize(camera.forward + camera.pixel * (across * camera.right + along * camera.down));
           const auto start = enter_relief(surface, top, camera.eye, direction);
           SurfacePoint hit;
-          if (start && caster.follow(*start, direction, hit) == RayOutcome::kHit)
+          if (start && caster.cast(*start, direction, hit) == RayOutcome::kHit)
             view.samples[next] = sample_at(surface, hit.position);
         }
     progress.advance((end - begin) * per_row);

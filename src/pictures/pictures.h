@@ -2,7 +2,7 @@
 // records what is missing and why.
 #pragma once
 
-#include "lighting/scene.h"
+#include "lighting/shaded_scene.h"
 #include "pictures/camera.h"
 #include "pictures/gallery.h"
 

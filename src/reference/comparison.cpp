@@ -13,24 +13,24 @@
 namespace hemibake {
 namespace {
 
-// Rays for the AO a sampled texel is binned by: off by some 0.003.
+// Rays for the AO by which a sampled texel is binned: off by some 0.003.
 constexpr int kAoRays = 1024;
 
-// One quantity at every sampled texel, over π.
+// Holds one quantity at every sampled texel, over π.
 struct Comparison {
   std::string quantity;
   std::vector<double> bake;
-  std::vector<double> referee;
-  std::vector<double> referee_variance;
+  std::vector<double> reference;
+  std::vector<double> reference_variance;
   std::vector<double> cut_off;  // the bake lacks at most this much
 };
 
-void check_inputs(const Surface& surface, const Bake& bake, const RefereeCheckOptions& options) {
-  if (bake.width != surface.width() || bake.height != surface.height())
-    throw InputError(fmt::format("bake of {}x{} texels, expected {}x{} as the map", bake.width, bake.height,
-                                 surface.width(), surface.height()));
-  if (bake.visible_fraction.empty() || bake.irradiance.empty())
+void check_inputs(const Surface& surface, const JudgedLight& bake, const RefereeCheckOptions& options) {
+  if (bake.ao.empty() || bake.irradiance.empty())
     throw InputError("the bake lacks the channels ao or irradiance.00, which the referee compares");
+  if (bake.ao.width != surface.width() || bake.ao.height != surface.height())
+    throw InputError(fmt::format("bake of {}x{} texels, expected {}x{} as the map", bake.ao.width,
+                                 bake.ao.height, surface.width(), surface.height()));
   const auto stored = static_cast<int>(bake.irradiance.size()) - 1;
   if (options.bounces < 0 || options.bounces > stored)
     throw InputError(
@@ -48,11 +48,11 @@ size_t bin_of(double ao, int bins) {
   return static_cast<size_t>(std::clamp(static_cast<int>(ao * bins), 0, bins - 1));
 }
 
-TexelSample sample_by_ao(const Grid<float>& visible_fraction, const RefereeCheckOptions& options) {
+// Samples texels in strata by AO, each with a share in proportion to the root of its texel count.
+TexelSample sample_by_ao(const Grid<float>& ao, const RefereeCheckOptions& options) {
   std::vector<std::vector<uint32_t>> population(static_cast<size_t>(options.ao_bins));
-  for (size_t i = 0; i < visible_fraction.size(); ++i)
-    population[bin_of(static_cast<double>(visible_fraction[i]), options.ao_bins)].push_back(
-        static_cast<uint32_t>(i));
+  for (size_t i = 0; i < ao.size(); ++i)
+    population[bin_of(static_cast<double>(ao[i]), options.ao_bins)].push_back(static_cast<uint32_t>(i));
   double roots = 0;
   for (const auto& texels : population) roots += std::sqrt(static_cast<double>(texels.size()));
 
@@ -61,19 +61,20 @@ TexelSample sample_by_ao(const Grid<float>& visible_fraction, const RefereeCheck
     if (population[b].empty()) continue;
     const double share = std::sqrt(static_cast<double>(population[b].size())) / roots;
     const auto wanted = static_cast<size_t>(std::ceil(share * static_cast<double>(options.texels)));
-    const size_t all = options.texels >= visible_fraction.size() ? population[b].size() : 0;
+    const size_t all = options.texels >= ao.size() ? population[b].size() : 0;
     append_sample(sample, sample_texels(population[b], std::max({size_t{2}, wanted, all}), options.seed + b));
   }
   return sample;
 }
 
-// Σ_b ρᵇ E_b/π of a bake, b = 0 … last; also what is still under way after it at albedo 1.
-struct BakeSum {
-  double sum = 0, under_way = 1;
+struct BounceSum {
+  double sum = 0;        // Σ_b ρᵇ E_b/π, b = 0 … last
+  double under_way = 1;  // 1 − Σ_b E_b/π: after the last bounce at albedo 1
 };
 
-BakeSum sum_bounces(const Bake& bake, uint32_t texel, double albedo) {
-  BakeSum result;
+// Sums the bounces of a bake without its own code: one by one.
+BounceSum sum_bounces(const JudgedLight& bake, uint32_t texel, double albedo) {
+  BounceSum result;
   double power = 1;
   for (const Grid<float>& plane : bake.irradiance) {
     const double light = static_cast<double>(plane[texel]) / kPi;
@@ -85,7 +86,7 @@ BakeSum sum_bounces(const Bake& bake, uint32_t texel, double albedo) {
   return result;
 }
 
-std::vector<Comparison> compare(const Bake& bake, std::span<const uint32_t> texels,
+std::vector<Comparison> compare(const JudgedLight& bake, std::span<const uint32_t> texels,
                                 const RefereeEstimates& measured, const RefereeCheckOptions& options) {
   const auto bounces_stored = static_cast<int>(bake.irradiance.size()) - 1;
   const double first_cut_off = std::pow(options.albedo, bounces_stored + 1);
@@ -97,11 +98,11 @@ std::vector<Comparison> compare(const Bake& bake, std::span<const uint32_t> texe
                  : all_bounces ? fmt::format("total at albedo {:g}", options.albedo)
                                : fmt::format("E0 to E{}", bounces_stored);
     for (size_t i = 0; i < texels.size(); ++i) {
-      const BakeSum sum = sum_bounces(bake, texels[i], all_bounces ? options.albedo : 1);
+      const BounceSum sum = sum_bounces(bake, texels[i], all_bounces ? options.albedo : 1);
       c.bake.push_back(single ? static_cast<double>(bake.irradiance[static_cast<size_t>(q)][texels[i]]) / kPi
                               : sum.sum);
-      c.referee.push_back(measured.mean[measured.index(i, q)]);
-      c.referee_variance.push_back(measured.variance[measured.index(i, q)]);
+      c.reference.push_back(measured.mean[measured.index(i, q)]);
+      c.reference_variance.push_back(measured.variance[measured.index(i, q)]);
       c.cut_off.push_back(all_bounces ? first_cut_off * sum.under_way : 0);
     }
   }
@@ -114,22 +115,22 @@ RefereeVerdict judge(const RefereeRow& row) {
                                                              : RefereeVerdict::kUndecided;
 }
 
-// Row of the sampled texels inside.
+// Compares one quantity over the sampled texels inside.
 RefereeRow make_row(const Comparison& comparison, const TexelSample& sample, const std::vector<bool>& inside,
                     double relative_tolerance, double confidence) {
   const size_t count = sample.texels.size();
   std::vector<double> difference(count), squared(count);
   for (size_t i = 0; i < count; ++i) {
-    difference[i] = comparison.bake[i] - comparison.referee[i];
-    squared[i] = difference[i] * difference[i] - comparison.referee_variance[i];
+    difference[i] = comparison.bake[i] - comparison.reference[i];
+    squared[i] = difference[i] * difference[i] - comparison.reference_variance[i];
   }
   const RefereeInterval bias =
-      mean_of_domain(sample, inside, difference, comparison.referee_variance, confidence);
+      mean_of_domain(sample, inside, difference, comparison.reference_variance, confidence);
   RefereeRow row;
   row.quantity = comparison.quantity;
   row.texels = static_cast<size_t>(std::count(inside.begin(), inside.end(), true));
   row.bake_mean = weighted_mean(sample, inside, comparison.bake);
-  row.referee_mean = weighted_mean(sample, inside, comparison.referee);
+  row.referee_mean = weighted_mean(sample, inside, comparison.reference);
   row.bias = bias.mean;
   row.half_width = bias.half_width + weighted_mean(sample, inside, comparison.cut_off);
   row.rms_difference = std::sqrt(std::max(0.0, weighted_mean(sample, inside, squared)));
@@ -140,18 +141,18 @@ RefereeRow make_row(const Comparison& comparison, const TexelSample& sample, con
 
 }  // namespace
 
-RefereeCheck check_against_referee(const Surface& surface, const Bake& bake,
+RefereeCheck check_against_referee(const Surface& surface, const JudgedLight& bake,
                                    const RefereeCheckOptions& options) {
   check_inputs(surface, bake, options);
-  const TexelSample sample = sample_by_ao(bake.visible_fraction, options);
+  const TexelSample sample = sample_by_ao(bake.ao, options);
 
-  RefereeOptions referee;
-  referee.paths = options.paths;
-  referee.bounces = options.bounces;
-  referee.totals = {{options.albedo, RefereeTotal::kUnlimited},
+  RefereeOptions tracing;
+  tracing.paths = options.paths;
+  tracing.bounces = options.bounces;
+  tracing.totals = {{options.albedo, RefereeTotal::kUnlimited},
                     {1, static_cast<int>(bake.irradiance.size()) - 1}};
-  referee.seed = options.seed;
-  const RefereeEstimates measured = referee_texels(surface, sample.texels, referee);
+  tracing.seed = options.seed;
+  const RefereeEstimates measured = referee_texels(surface, sample.texels, tracing);
   const std::vector<Comparison> comparisons = compare(bake, sample.texels, measured, options);
 
   RefereeCheck check;

@@ -34,7 +34,8 @@ void check_lighting(const Surface& surface, const RefereeLighting& lighting, int
   if (paths < 2) throw InputError(fmt::format("referee paths {}, expected at least 2", paths));
 }
 
-// x, y in texels inside the map, up to one beyond the last texel where it wraps.
+// Interpolates the albedo at x, y in texels inside the map, up to one beyond the last texel of a wrapping
+// one.
 glm::dvec3 albedo_at(const Grid<glm::vec3>& albedo, Edge edge, double x, double y) {
   const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
   const double u = x - i, v = y - j;
@@ -48,14 +49,14 @@ glm::dvec3 albedo_at(const Grid<glm::vec3>& albedo, Edge edge, double x, double 
          v * ((1 - u) * texel(i, j + 1) + u * texel(i + 1, j + 1));
 }
 
-// Radiance times albedos along one path; its mean over the cosine-distributed start is E/π.
-glm::dvec3 path_light(const HeightFieldRayCaster& walk, const RefereeLighting& lighting, Edge edge,
+// Returns radiance times albedos along one path. Its mean over cosine-distributed paths is E/π.
+glm::dvec3 path_light(const HeightFieldRayCaster& caster, const RefereeLighting& lighting, Edge edge,
                       SurfacePoint at, double lift, RefereeRandom& random) {
   glm::dvec3 share(1);
   for (;;) {
     const glm::dvec3 direction = random_cosine_direction(at.normal, random);
     const glm::dvec3 start(at.position.x, at.position.y, at.position.z + lift);
-    if (walk.follow(start, direction, at) != RayOutcome::kHit) return share * lighting.sky(direction);
+    if (caster.cast(start, direction, at) != RayOutcome::kHit) return share * lighting.sky(direction);
     const glm::dvec3 albedo = albedo_at(lighting.albedo, edge, at.position.x, at.position.y);
     const double survival = std::max({albedo.r, albedo.g, albedo.b});
     if (survival == 0 || (survival < 1 && random.uniform() >= survival)) return glm::dvec3(0);
@@ -68,21 +69,18 @@ glm::dvec3 path_light(const HeightFieldRayCaster& walk, const RefereeLighting& l
 std::vector<RefereeIrradiance> referee_lit_texels(const Surface& surface, std::span<const uint32_t> texels,
                                                   const RefereeLighting& lighting, int paths, uint64_t seed) {
   check_lighting(surface, lighting, paths);
-  const HeightFieldRayCaster walk(surface);
-  const double lift = walk.start_lift(kLiftTexels);
-  const auto width = static_cast<uint32_t>(surface.width());
+  const HeightFieldRayCaster caster(surface);
+  const double lift = caster.start_lift(kLiftTexels);
   std::vector<RefereeIrradiance> results(texels.size());
   Progress progress("refereeing", texels.size(), "texel");
   parallel_for(texels.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const uint32_t texel = texels[i];
-      const SurfacePoint receiver{
-          {texel % width, texel / width, surface.heights_m[texel] / surface.texel_size_m},
-          glm::dvec3(surface.normals[texel])};
+      const SurfacePoint receiver = texel_center(surface, texel);
       RefereeRandom random(seed, texel, 0);
       std::array<Moments, 3> moments;
       for (int p = 0; p < paths; ++p) {
-        const glm::dvec3 light = path_light(walk, lighting, surface.edge, receiver, lift, random);
+        const glm::dvec3 light = path_light(caster, lighting, surface.edge, receiver, lift, random);
         for (int c = 0; c < 3; ++c) moments[static_cast<size_t>(c)].add(kPi * light[c]);
       }
       for (int c = 0; c < 3; ++c) {

@@ -1,5 +1,5 @@
-// The referee under any sky and with any colour: plain path tracing of one texel's irradiance, as unbiased as
-// referee.h and with the same walk, lift and random numbers.
+// Measures irradiance by path tracing under any sky and at any albedo, RGB: the ground truth of lighting/. As
+// unbiased as path_tracer.h, with the same ray caster, lift and random numbers.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,9 @@ namespace hemibake {
 
 struct RefereeLighting {
   // Radiance from where `direction` (unit, world frame) points, ≥ 0 per channel. Called from many threads.
-  // With open edges directions below the horizon come up as well.
+  // Open edges ask for directions below the horizon as well.
   std::function<glm::dvec3(const glm::dvec3& direction)> sky;
-  // 0..1 per channel: one value per texel, bilinear between texel centres (clamped at open edges), or a
-  // single one.
+  // 0..1 per channel: one value per texel, bilinear between texel centres (clamped at open edges), or 1×1.
   Grid<glm::vec3> albedo;
 };
 
@@ -27,8 +26,9 @@ struct RefereeIrradiance {
   glm::dvec3 variance{0};  // of that mean
 };
 
-// One result per texel. paths ≥ 2 per texel. Russian roulette lets a path live on with the largest channel of
-// the albedo it hits, so its weight never grows. Throws InputError for sizes and values out of range.
+// Measures the irradiance of texels. Russian roulette keeps a path with the largest channel of the albedo it
+// hits as probability, so its weight never grows.
+// texels: row-major indices. paths: per texel, 2... Throws InputError for sizes and values out of range.
 std::vector<RefereeIrradiance> referee_lit_texels(const Surface& surface, std::span<const uint32_t> texels,
                                                   const RefereeLighting& lighting, int paths, uint64_t seed);
 

@@ -25,7 +25,7 @@ using Group = std::array<Path, kRefereeGroupPaths>;
 
 struct RayCounts {
   uint64_t rays = 0;
-  uint64_t lost = 0;
+  uint64_t truncated = 0;
 };
 
 void check_options(const RefereeOptions& options) {
@@ -45,12 +45,6 @@ void check_options(const RefereeOptions& options) {
   }
 }
 
-SurfacePoint receiver_at(const Surface& surface, uint32_t texel) {
-  const auto width = static_cast<uint32_t>(surface.width());
-  return {{texel % width, texel / width, surface.heights_m[texel] / surface.texel_size_m},
-          glm::dvec3(surface.normals[texel])};
-}
-
 uint32_t group_count(const RefereeOptions& options) {
   const auto paths = static_cast<uint32_t>(options.paths);
   return std::max(2u, (paths + kRefereeGroupPaths - 1) / kRefereeGroupPaths);
@@ -60,18 +54,18 @@ bool reaches(const RefereeTotal& total, int bounce) {
   return total.last_bounce == RefereeTotal::kUnlimited || bounce <= total.last_bounce;
 }
 
-class Referee {
+class PathTracer {
  public:
-  Referee(const Surface& surface, const RefereeOptions& options)
-      : walk_(surface),
+  PathTracer(const Surface& surface, const RefereeOptions& options)
+      : caster_(surface),
         options_(options),
         quantities_(options.bounces + 1 + static_cast<int>(options.totals.size())),
-        lift_(walk_.start_lift(options.lift_texels)) {}
+        lift_(caster_.start_lift(options.lift_texels)) {}
 
-  const HeightFieldRayCaster& walk() const { return walk_; }
+  const HeightFieldRayCaster& caster() const { return caster_; }
   int quantities() const { return quantities_; }
 
-  // One independent estimate of every quantity into `out`. Weights of `group` sum to 1.
+  // Writes one independent estimate of every quantity into `out`. Weights of `group` sum to 1.
   void measure_group(Group& group, RefereeRandom& random, std::span<double> out, RayCounts& counts) const {
     std::fill(out.begin(), out.end(), 0.0);
     Group hits;
@@ -80,7 +74,7 @@ class Referee {
       double escaped = 0;
       for (const Path& path : group) {
         SurfacePoint hit;
-        if (follow(path.at, random, hit, counts))
+        if (trace_on(path.at, random, hit, counts))
           hits[hit_count++] = {hit, path.weight};
         else
           escaped += path.weight;
@@ -100,11 +94,12 @@ class Referee {
     return out[static_cast<size_t>(options_.bounces) + 1 + k];
   }
 
-  bool follow(const SurfacePoint& from, RefereeRandom& random, SurfacePoint& hit, RayCounts& counts) const {
+  // Casts a ray of the path on. Returns whether it hits.
+  bool trace_on(const SurfacePoint& from, RefereeRandom& random, SurfacePoint& hit, RayCounts& counts) const {
     const glm::dvec3 start(from.position.x, from.position.y, from.position.z + lift_);
-    const RayOutcome end = walk_.follow(start, random_cosine_direction(from.normal, random), hit);
+    const RayOutcome end = caster_.cast(start, random_cosine_direction(from.normal, random), hit);
     ++counts.rays;
-    counts.lost += end == RayOutcome::kTruncated;
+    counts.truncated += end == RayOutcome::kTruncated;
     return end == RayOutcome::kHit;
   }
 
@@ -128,16 +123,15 @@ class Referee {
       SurfacePoint at = path.at;
       double weight = path.weight;
       for (int bounce = options_.bounces + 1;; ++bounce) {
-        // The largest share of light any total still takes decides how likely the path lives on.
+        // The path survives with the largest share of light that any total still takes.
         double survival = 0;
         for (const RefereeTotal& wanted : options_.totals)
           if (reaches(wanted, bounce)) survival = std::max(survival, wanted.albedo);
         if (survival == 0 || (survival < 1 && random.uniform() >= survival)) break;
-        // Before the first roulette no light was taken off the path: ρᵇ of the earlier bounces is in the
-        // totals.
+        // ρᵇ of the bounces before the first roulette is in the totals: until there the path lost nothing.
         weight /= survival;
         SurfacePoint hit;
-        if (!follow(at, random, hit, counts)) {
+        if (!trace_on(at, random, hit, counts)) {
           for (size_t k = 0; k < options_.totals.size(); ++k)
             if (reaches(options_.totals[k], bounce))
               total(out, k) += weight * std::pow(options_.totals[k].albedo, bounce);
@@ -148,19 +142,19 @@ class Referee {
     }
   }
 
-  HeightFieldRayCaster walk_;
+  HeightFieldRayCaster caster_;
   const RefereeOptions& options_;
   int quantities_;
   double lift_;
 };
 
-// The estimates of one group; start(random) is where each of its paths begins.
+// Measures one group. start(random): returns where each of its paths begins.
 template <class Start>
-void run_group(const Referee& referee, RefereeRandom random, const Start& start, std::span<double> out,
+void run_group(const PathTracer& tracer, RefereeRandom random, const Start& start, std::span<double> out,
                RayCounts& counts) {
   Group group;
   for (Path& path : group) path = {start(random), 1.0 / kRefereeGroupPaths};
-  referee.measure_group(group, random, out, counts);
+  tracer.measure_group(group, random, out, counts);
 }
 
 double variance_of_mean(const Moments& moments) {
@@ -180,7 +174,7 @@ RefereeEstimates make_estimates(int quantities, uint32_t groups, size_t receiver
 void add_counts(std::span<const RayCounts> counts, RefereeEstimates& estimates) {
   for (const RayCounts& c : counts) {
     estimates.rays += c.rays;
-    estimates.truncated_rays += c.lost;
+    estimates.truncated_rays += c.truncated;
   }
 }
 
@@ -189,20 +183,20 @@ void add_counts(std::span<const RayCounts> counts, RefereeEstimates& estimates) 
 RefereeEstimates referee_texels(const Surface& surface, std::span<const uint32_t> texels,
                                 const RefereeOptions& options) {
   check_options(options);
-  const Referee referee(surface, options);
-  const auto quantities = static_cast<size_t>(referee.quantities());
-  RefereeEstimates estimates = make_estimates(referee.quantities(), group_count(options), texels.size());
+  const PathTracer tracer(surface, options);
+  const auto quantities = static_cast<size_t>(tracer.quantities());
+  RefereeEstimates estimates = make_estimates(tracer.quantities(), group_count(options), texels.size());
   std::vector<RayCounts> counts(texels.size());
   Progress progress("refereeing", texels.size(), "texel");
   parallel_for(texels.size(), 1, [&](size_t begin, size_t end) {
     std::vector<double> out(quantities);
     for (size_t i = begin; i < end; ++i) {
       const uint32_t texel = texels[i];
-      const SurfacePoint receiver = receiver_at(surface, texel);
+      const SurfacePoint receiver = texel_center(surface, texel);
       std::vector<Moments> moments(quantities);
       for (uint32_t g = 0; g < estimates.groups; ++g) {
         run_group(
-            referee, {options.seed, texel, g}, [&](RefereeRandom&) { return receiver; }, out, counts[i]);
+            tracer, {options.seed, texel, g}, [&](RefereeRandom&) { return receiver; }, out, counts[i]);
         for (size_t q = 0; q < quantities; ++q) moments[q].add(out[q]);
       }
       for (size_t q = 0; q < quantities; ++q) {
@@ -219,15 +213,15 @@ RefereeEstimates referee_texels(const Surface& surface, std::span<const uint32_t
 std::vector<double> referee_visible_fractions(const Surface& surface, std::span<const uint32_t> texels,
                                               int rays, uint64_t seed) {
   if (rays < 1) throw InputError(fmt::format("referee rays {}, expected at least 1", rays));
-  const HeightFieldRayCaster walk(surface);
-  const double lift = walk.start_lift(RefereeOptions().lift_texels);
+  const HeightFieldRayCaster caster(surface);
+  const double lift = caster.start_lift(RefereeOptions().lift_texels);
   const int side = static_cast<int>(std::ceil(std::sqrt(rays)));
   constexpr uint64_t kFractionGroup = ~uint64_t{0};
   std::vector<double> fractions(texels.size());
   parallel_for(texels.size(), 16, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       RefereeRandom random(seed, texels[i], kFractionGroup);
-      const SurfacePoint receiver = receiver_at(surface, texels[i]);
+      const SurfacePoint receiver = texel_center(surface, texels[i]);
       const glm::dvec3 start = receiver.position + glm::dvec3(0, 0, lift);
       int visible = 0;
       for (int cell = 0; cell < side * side; ++cell) {
@@ -235,7 +229,7 @@ std::vector<double> referee_visible_fractions(const Surface& surface, std::span<
             uniform_direction(receiver.normal, (cell / side + random.uniform()) / side,
                               (cell % side + random.uniform()) / side);
         SurfacePoint hit;
-        visible += walk.follow(start, direction, hit) != RayOutcome::kHit;
+        visible += caster.cast(start, direction, hit) != RayOutcome::kHit;
       }
       fractions[i] = static_cast<double>(visible) / (side * side);
     }
@@ -245,13 +239,13 @@ std::vector<double> referee_visible_fractions(const Surface& surface, std::span<
 
 RefereeEstimates referee_area(const Surface& surface, const RefereeOptions& options) {
   check_options(options);
-  const Referee referee(surface, options);
-  const HeightFieldRayCaster& walk = referee.walk();
-  // Area of all facets up to each, so that a uniform number finds a facet by its area.
-  std::vector<double> area(walk.facet_count());
+  const PathTracer tracer(surface, options);
+  const HeightFieldRayCaster& caster = tracer.caster();
+  // Cumulative area: a uniform number finds a facet by its area.
+  std::vector<double> area(caster.facet_count());
   double sum = 0;
-  for (uint32_t f = 0; f < walk.facet_count(); ++f)
-    area[f] = sum += 0.5 / walk.point_on_facet(f, 0, 0).normal.z;
+  for (uint32_t f = 0; f < caster.facet_count(); ++f)
+    area[f] = sum += 0.5 / caster.point_on_facet(f, 0, 0).normal.z;
   const auto start = [&](RefereeRandom& random) {
     const auto found = std::upper_bound(area.begin(), area.end() - 1, random.uniform() * sum);
     double u = random.uniform(), v = random.uniform();
@@ -259,24 +253,24 @@ RefereeEstimates referee_area(const Surface& surface, const RefereeOptions& opti
       u = 1 - u;
       v = 1 - v;
     }
-    return walk.point_on_facet(static_cast<uint32_t>(found - area.begin()), u, v);
+    return caster.point_on_facet(static_cast<uint32_t>(found - area.begin()), u, v);
   };
 
   constexpr uint64_t kAreaReceiver = ~uint64_t{0};
   constexpr size_t kGrain = 16;  // groups
-  const auto quantities = static_cast<size_t>(referee.quantities());
+  const auto quantities = static_cast<size_t>(tracer.quantities());
   const uint32_t groups = group_count(options);
   std::vector<double> out(groups * quantities);
   std::vector<RayCounts> counts(groups);
   Progress progress("refereeing", groups, "group");
   parallel_for(groups, kGrain, [&](size_t begin, size_t end) {
     for (size_t g = begin; g < end; ++g)
-      run_group(referee, {options.seed, kAreaReceiver, g}, start, {&out[g * quantities], quantities},
+      run_group(tracer, {options.seed, kAreaReceiver, g}, start, {&out[g * quantities], quantities},
                 counts[g]);
     progress.advance(end - begin);
   });
 
-  RefereeEstimates estimates = make_estimates(referee.quantities(), groups, 1);
+  RefereeEstimates estimates = make_estimates(tracer.quantities(), groups, 1);
   for (size_t q = 0; q < quantities; ++q) {
     Moments moments;
     for (uint32_t g = 0; g < groups; ++g) moments.add(out[g * quantities + q]);

@@ -1,18 +1,15 @@
-// The referee: an unbiased path tracer that the bake is judged by. It includes nothing of the tracers, the
-// transport or the direction sets: its own ray walk in double precision, its own random numbers, its own
-// estimator.
+// Measures light by reference path tracing: the unbiased judge of the bake. It includes nothing of the
+// tracers, the transport or the direction sets: ray caster in double precision, random numbers and estimator
+// are its own.
 //
 // A path starts at a receiver, cosine-distributed about the receiver's normal. Where it meets the surface it
 // goes on from the exact point, cosine-distributed about the facet's own normal. E_b/π is the probability
-// that it escapes after exactly b reflections, the total at albedo ρ is the mean of ρᵇ. There is no clamp,
+// that it escapes after exactly b reflections, the total at albedo ρ is the mean of ρᵇ. Nothing is clamped,
 // and no bounce is the last.
 //
-// Starts and hits are lifted vertically before going on, by a millionth of a texel unless asked otherwise.
-// Rays cannot leak (height_walk.h), so the lift only has to clear rounding, and it says which of the facets
-// around a texel centre is met by directions below the ground: the limit is the surface itself. What it
-// changes is of the order of lift · ln(1/lift) over the distance to what is seen: 0.8 % of E_5 in a groove of
-// 2 texels at 10⁻³, too little to measure at 10⁻⁶. (Means of rough maps do not show 10⁻⁴ to 10⁻² either; a
-// test runs them.)
+// Starts and hits are lifted vertically before a path goes on, by a millionth of a texel by default. Rays do
+// not leak (ray_caster.h), so the lift only clears rounding, and decides which of the facets around a texel
+// centre is met by directions below the ground: the limit is the surface itself.
 //
 // Splitting: paths run in groups of 64. After every bounce the paths of a group that hit are copied (or
 // thinned) to 64 again by systematic resampling, each copy carrying the same share of their weight: a hit
@@ -20,10 +17,10 @@
 // unbiased, while late bounces get as many paths as the first. (Gordon, Salmond, Smith, "Novel approach to
 // nonlinear/non-Gaussian Bayesian state estimation", 1993; unbiasedness: Del Moral, "Feynman-Kac Formulae",
 // 2004, 7.4.) Paths within a group are dependent, groups are not: standard errors come from the spread
-// between groups. After the last bounce wanted for itself, paths go on without splitting, ended by Russian
-// roulette at the largest albedo a total still needs.
+// between groups. After the last bounce measured by itself, paths go on without splitting, ended by Russian
+// roulette at the largest albedo that a total still needs.
 //
-// The bytes of every result are the same at any thread count.
+// Results have the same bytes at any thread count.
 #pragma once
 
 #include <cstdint>
@@ -60,8 +57,7 @@ struct RefereeEstimates {
   std::vector<double> mean;      // [receiver · quantities + quantity]
   std::vector<double> variance;  // of that mean, unbiased
   uint64_t rays = 0;
-  uint64_t truncated_rays =
-      0;  // taken for sky, see RayOutcome::kTruncated: every estimate is off by at most lost paths / paths
+  uint64_t truncated_rays = 0;  // taken for sky: estimates are off by at most truncated rays / paths
 
   uint64_t paths() const { return uint64_t{groups} * kRefereeGroupPaths; }  // per receiver
   size_t receivers() const { return quantities == 0 ? 0 : mean.size() / static_cast<size_t>(quantities); }
@@ -77,20 +73,22 @@ struct RefereeInterval {
   bool contains(double value) const { return value >= mean - half_width && value <= mean + half_width; }
 };
 
-// Receivers are the given texels: the centre, about the shading normal. Throws InputError for options out of
-// range.
+// Measures texels at their centres about their shading normals, one receiver each.
+// texels: row-major indices. Throws InputError for options out of range.
 RefereeEstimates referee_texels(const Surface& surface, std::span<const uint32_t> texels,
                                 const RefereeOptions& options);
 
-// α of the given texels by `rays` rays each, rounded up to a square, one at random in each cell of equal
-// solid angle of the hemisphere about the shading normal. Throws InputError where rays < 1.
+// Returns α of texels by stratified rays: one at random in each cell of equal solid angle of the hemisphere
+// about the shading normal.
+// texels: row-major indices. rays: per texel, rounded up to a square, 1..; less throws InputError.
 std::vector<double> referee_visible_fractions(const Surface& surface, std::span<const uint32_t> texels,
                                               int rays, uint64_t seed);
 
-// One receiver: the surface itself, the mean over its area about the facets' normals.
+// Measures the surface as one receiver: the mean over its area about the facets' normals.
 RefereeEstimates referee_area(const Surface& surface, const RefereeOptions& options);
 
-// Student's t with groups − 1 degrees of freedom. confidence in (0, 1).
+// Returns the interval of a mean by Student's t with groups − 1 degrees of freedom.
+// confidence: in (0, 1).
 RefereeInterval referee_interval(const RefereeEstimates& estimates, size_t receiver, int quantity,
                                  double confidence);
 

@@ -1,4 +1,4 @@
-// Random numbers and directions of the referee, shared with nothing else.
+// Draws random numbers and directions for the reference path tracer, and shares them with nothing else.
 #pragma once
 
 #include <cmath>
@@ -10,18 +10,18 @@
 
 namespace hemibake {
 
-// PCG32: O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for Random
-// Number Generation", Harvey Mudd College HMC-CS-2014-0905, 2014 (pcg32_random_r). One generator per (seed,
-// receiver, group).
+// Generates PCG32: O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms for
+// Random Number Generation", Harvey Mudd College HMC-CS-2014-0905, 2014 (pcg32_random_r). One generator per
+// (seed, receiver, group).
 class RefereeRandom {
  public:
   RefereeRandom(uint64_t seed, uint64_t receiver, uint64_t group)
       : state_(mix(mix(mix(seed) + receiver) + group)) {}
 
-  // Uniform in (0, 1): never an end.
+  // Returns a uniform number in (0, 1), never an end.
   double uniform() { return (next_bits() + 0.5) * 0x1p-32; }
 
-  // Uniform in 0 … count − 1, by rejection of the incomplete last round.
+  // Returns a uniform number in 0 … count − 1, by rejection of the incomplete last round.
   uint32_t below(uint32_t count) {
     const uint32_t incomplete = (0u - count) % count;
     uint32_t bits = next_bits();
@@ -30,7 +30,7 @@ class RefereeRandom {
   }
 
  private:
-  // Finaliser of MurmurHash3 (Appleby 2011) after an odd step, so that 0 does not stay 0.
+  // Mixes bits by the finaliser of MurmurHash3 (Appleby 2011) after an odd step, so that 0 does not stay 0.
   static uint64_t mix(uint64_t bits) {
     bits += 0x9e3779b97f4a7c15ull;
     bits = (bits ^ (bits >> 33)) * 0xff51afd7ed558ccdull;
@@ -42,27 +42,27 @@ class RefereeRandom {
     const uint64_t old = state_;
     state_ = old * 6364136223846793005ull + 1442695040888963407ull;
     const uint32_t shifted = static_cast<uint32_t>(((old >> 18) ^ old) >> 27);
-    const uint32_t turn = static_cast<uint32_t>(old >> 59);
-    return (shifted >> turn) | (shifted << ((32 - turn) & 31));
+    const uint32_t rotation = static_cast<uint32_t>(old >> 59);
+    return (shifted >> rotation) | (shifted << ((32 - rotation) & 31));
   }
 
   uint64_t state_ = 0;
 };
 
-// Unit vector with density proportional to the cosine to `normal`: a uniform point of the unit sphere moved
-// by the normal (Shirley, "Ray Tracing in One Weekend", 2016, "True Lambertian Reflection"). It needs no
-// frame, so none can be wrong.
+// Draws a unit vector with density proportional to its cosine to `normal`: a uniform point of the unit sphere
+// moved by the normal (Shirley, "Ray Tracing in One Weekend", 2016, "True Lambertian Reflection"). It needs
+// no frame, so none can be wrong.
 inline glm::dvec3 random_cosine_direction(const glm::dvec3& normal, RefereeRandom& random) {
   const double z = 1 - 2 * random.uniform();
   const double radius = std::sqrt(1 - z * z), angle = 2 * kPi * random.uniform();
   const glm::dvec3 sum = normal + glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), z);
   const double squared = glm::dot(sum, sum);
-  // Opposite the normal to rounding there is no direction left; one in 10¹⁰ or fewer.
+  // A point opposite the normal to rounding, one in 10¹⁰ or fewer, leaves no direction.
   return squared > 1e-20 ? sum / std::sqrt(squared) : normal;
 }
 
-// Unit vector of the hemisphere about `normal`: cosine u to it, at v of a turn around it. Uniform in solid
-// angle where u and v are.
+// Returns the unit vector with cosine u to `normal`, at azimuth 2πv about it: uniform in solid angle over its
+// hemisphere for uniform u, v in 0..1.
 inline glm::dvec3 uniform_direction(const glm::dvec3& normal, double u, double v) {
   const glm::dvec3 aside = std::abs(normal.z) < 0.5 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
   const glm::dvec3 tangent = glm::normalize(glm::cross(normal, aside));

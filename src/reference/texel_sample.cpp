@@ -17,7 +17,7 @@ double population_of(const TexelSample& sample) {
   return sum;
 }
 
-// Share of all texels that are inside, estimated.
+// Estimates the share of all texels that are inside.
 double domain_share(const TexelSample& sample, const std::vector<bool>& inside) {
   return weighted_mean(sample, std::vector<double>(inside.begin(), inside.end()));
 }

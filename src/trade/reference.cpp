@@ -144,7 +144,8 @@ nlohmann::ordered_json ask_referee(const Surface& surface, const Bake& bake, boo
   options.paths = quick ? 128 : 1024;
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   if (options.texels < 2) return rows;
-  for (const RefereeRow& row : check_against_referee(surface, bake, options).means)
+  for (const RefereeRow& row :
+       check_against_referee(surface, {bake.visible_fraction, bake.irradiance}, options).means)
     rows.push_back({{"quantity", row.quantity},
                     {"reference", row.bake_mean},
                     {"referee", row.referee_mean},

@@ -1,4 +1,5 @@
-// Light going round at given albedos: E = E₀ + W diag(albedo) E between the patches, gathered by the texels.
+// Solves for light at given albedos: E = E₀ + W diag(albedo) E between the patches, then a final gather at
+// the texels.
 #pragma once
 
 #include <optional>
@@ -10,40 +11,40 @@
 
 namespace hemibake {
 
-// What arrives before any bounce, in any unit, none negative: one value per texel and one per patch (where
-// patches are texels, the same values twice).
+// Light before any bounce, in any unit, 0..: one value per texel and one per patch (if patches are texels,
+// the same values twice).
 struct DirectLight {
   std::vector<double> texel_light, patch_light;
 };
 
-// The sky that is the same everywhere: E₀/π.
-DirectLight uniform_sky(const LightTransport& seen);
+// Returns the light of a uniform sky: E₀/π.
+DirectLight uniform_sky(const LightTransport& transport);
 
 struct AlbedoOptions {
   std::optional<int> bounces;  // of the texels' light, 0..; none: until converged
-  double tolerance = 1e-6;     // converged: no patch is further off than this, over the largest direct light
-  int max_products = 2000;     // patch matrix times light; the end of it in any case, at least 1
+  double tolerance = 1e-6;     // converged: largest error of a patch, over the largest direct light
+  int max_products = 2000;     // limit of products of the patch matrix and light, 1..
 };
 
-// Irradiance with its bounces, in the unit of the direct light; of the patches as the texels gathered it (one
-// bounce less).
+// Irradiance with its bounces, in the unit of the direct light.
 struct AlbedoLight {
-  std::vector<double> texel_light, patch_light;
-  int products = 0;  // patch matrix times light
-  // Only converged: no patch is further than this from the truth, either way, over the largest direct light:
-  // a bound, not an estimate, but for the rounding of the products (10⁻¹⁵ of what light can add up to).
-  // Infinite where a patch could keep light for ever.
+  std::vector<double> texel_light;
+  std::vector<double> patch_light;  // as the texels gathered it: one bounce less
+  int products = 0;                 // of the patch matrix and light
+  // Converged only: bound of the error of a patch, over the largest direct light. A bound but for the
+  // rounding of the products (10⁻¹⁵ of all light). Infinite if a patch could keep light for ever.
   double missing = 0;
 };
 
-// albedo: one per patch, 0..1. gather: texel × patch; patch_links: patch × patch (the same matrix where
-// patches are texels). The same bytes at any thread count.
-AlbedoLight bounce_with_albedo(const FormFactorMatrix& final_gather, const FormFactorMatrix& patch_links,
-                               const DirectLight& direct, std::span<const float> albedo,
-                               const AlbedoOptions& options);
+// Sends light round at an albedo per patch. The same bytes at any thread count.
+// final_gather: texel × patch. patch_form_factors: patch × patch (the same matrix if patches are texels).
+// albedo: one per patch, 0..1.
+AlbedoLight bounce_with_albedo(const FormFactorMatrix& final_gather,
+                               const FormFactorMatrix& patch_form_factors, const DirectLight& direct,
+                               std::span<const float> albedo, const AlbedoOptions& options);
 
-// The same under the uniform sky: everything over π.
-AlbedoLight bounce_with_albedo(const LightTransport& seen, std::span<const float> albedo,
+// Sends the light of a uniform sky round at an albedo per patch, everything over π.
+AlbedoLight bounce_with_albedo(const LightTransport& transport, std::span<const float> albedo,
                                const AlbedoOptions& options);
 
 }  // namespace hemibake

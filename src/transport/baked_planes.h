@@ -1,4 +1,4 @@
-// The planes of a finished bake: what BAKE.exr holds. Planes that were not asked for are empty.
+// The planes of a finished bake, as in BAKE.exr. Planes that were not asked for are empty.
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -14,10 +14,10 @@ namespace hemibake {
 namespace {
 
 constexpr size_t kGrain = 16384;
-// A test gathers every texel, a fifth to half of the work of a product.
+// A test is a final gather, a fifth to half of the work of a product.
 constexpr int kBouncesBetweenTests = 10, kStepsBetweenTests = 4;
-// Largest |Σ_j w_ij + E₀(i)/π − 1| of rows that keep the energy: what is still under way is then known.
-constexpr double kKeepsEnergy = 1e-6;
+// Largest |Σ_j w_ij + E₀(i)/π − 1| of rows that conserve energy, whose residual is then known.
+constexpr double kConservesEnergy = 1e-6;
 
 std::vector<double> as_double(const std::vector<float>& values) { return {values.begin(), values.end()}; }
 
@@ -33,36 +33,34 @@ Grid<float> times_pi(const std::vector<double>& values, int width, int height) {
   return grid;
 }
 
-// Light under way: everything over π.
-struct Flow {
-  const LightTransport& seen;
-  bool texels_are_patches;
+// Light of the patches from bounce to bounce, everything over π.
+struct PatchBounces {
+  const LightTransport& transport;
   std::vector<double> texel_direct;
   std::vector<double> current;  // E_b of the patches
   std::vector<double> sum;      // E_0 + … + E_b of the patches
   std::vector<double> next;
 
-  explicit Flow(const LightTransport& visibility)
-      : seen(visibility),
-        texels_are_patches(visibility.patch_form_factors.empty()),
-        texel_direct(as_double(visibility.direct_over_pi.values)),
-        current(as_double(visibility.patch_direct())),
+  explicit PatchBounces(const LightTransport& of)
+      : transport(of),
+        texel_direct(as_double(of.direct_over_pi.values)),
+        current(as_double(of.patch_direct())),
         sum(current),
         next(current.size()) {}
 
   void bounce() {
-    multiply(seen.bounce_matrix(), current, next);
+    multiply(transport.bounce_matrix(), current, next);
     current.swap(next);
     add_to(sum, current);
   }
 
-  // E_0 + … + E_{b+1} of the texels, from the patches' sum to E_b.
-  std::vector<double> texel_total() const { return gathered(sum); }
+  // Returns E_0 + … + E_{b+1} of the texels, from the sum to E_b of the patches.
+  std::vector<double> texel_total() const { return final_gather(sum); }
 
-  // Texels under the sky and the light of the patches.
-  std::vector<double> gathered(const std::vector<double>& patches) const {
+  // Returns the light of the texels under the sky and the light of the patches.
+  std::vector<double> final_gather(const std::vector<double>& patches) const {
     std::vector<double> total(texel_direct.size());
-    multiply(seen.final_gather, patches, total);
+    multiply(transport.final_gather, patches, total);
     add_to(total, texel_direct);
     return total;
   }
@@ -72,64 +70,65 @@ double worst_residual(const std::vector<double>& total) {
   return 1 - *std::min_element(total.begin(), total.end());
 }
 
-double worst_either_way(const std::vector<double>& total) {
+double largest_deviation(const std::vector<double>& total) {
   double worst = 0;
   for (const double sum : total) worst = std::max(worst, std::abs(1 - sum));
   return worst;
 }
 
-bool rows_sum_to_one(const FormFactorMatrix& links, const std::vector<float>& direct) {
-  const std::vector<double> sums = row_sums(links);
+bool rows_sum_to_one(const FormFactorMatrix& form_factors, const std::vector<float>& direct) {
+  const std::vector<double> sums = row_sums(form_factors);
   for (size_t i = 0; i < sums.size(); ++i)
-    if (std::abs(sums[i] + static_cast<double>(direct[i]) - 1) > kKeepsEnergy) return false;
+    if (std::abs(sums[i] + static_cast<double>(direct[i]) - 1) > kConservesEnergy) return false;
   return true;
 }
 
-// Rows whose one link leads to themselves and loses nothing, ascending.
-std::vector<uint32_t> rows_that_see_only_themselves(const FormFactorMatrix& links) {
-  std::vector<uint32_t> closed;
-  for (size_t b = 0; b < links.blocks.size(); ++b)
-    visit_rows(links, b,
+// Returns rows whose only entry is themselves with weight 1, ascending.
+std::vector<uint32_t> enclosed_rows(const FormFactorMatrix& form_factors) {
+  std::vector<uint32_t> rows;
+  for (size_t b = 0; b < form_factors.blocks.size(); ++b)
+    visit_rows(form_factors, b,
                [&](uint32_t row, std::span<const uint32_t> patches, std::span<const float> weights) {
-                 if (patches.size() == 1 && patches[0] == row && weights[0] >= 1) closed.push_back(row);
+                 if (patches.size() == 1 && patches[0] == row && weights[0] >= 1) rows.push_back(row);
                });
-  return closed;
+  return rows;
 }
 
-void name_short_texels(const LightTransport& seen, double tolerance, Bounces& result) {
+void list_unconverged(const LightTransport& transport, double tolerance, Bounces& result) {
   for (uint32_t texel = 0; texel < result.residual.size(); ++texel)
     if (static_cast<double>(result.residual[texel]) >= tolerance) result.unconverged_texels.push_back(texel);
-  if (result.unconverged_texels.empty() || !seen.patch_form_factors.empty()) return;
-  std::ranges::set_intersection(rows_that_see_only_themselves(seen.final_gather), result.unconverged_texels,
+  if (result.unconverged_texels.empty() || !transport.patch_form_factors.empty()) return;
+  std::ranges::set_intersection(enclosed_rows(transport.final_gather), result.unconverged_texels,
                                 std::back_inserter(result.enclosed_texels));
 }
 
-// Bounce after bounce, for rows that do not keep the energy (the march's published weights).
-void converge_by_bounces(Flow& flow, const BounceOptions& options, Bounces& result,
+// Converges bounce by bounce, for rows that do not conserve energy (the march's published weights).
+void converge_by_bounces(PatchBounces& patches, const BounceOptions& options, Bounces& result,
                          std::vector<double>& total) {
   Progress progress("converging", static_cast<uint64_t>(options.max_bounces), "bounce");
   while (worst_residual(total) >= *options.converge_tolerance && result.bounces_made < options.max_bounces) {
     const int batch = std::min(kBouncesBetweenTests, options.max_bounces - result.bounces_made);
-    // The patches are at bounce `bounces_made`; the gather adds one more.
-    for (int i = 1; i < batch; ++i) flow.bounce();
-    total = flow.texel_total();
-    flow.bounce();
+    // The patches are at bounce `bounces_made`; the final gather adds one more.
+    for (int i = 1; i < batch; ++i) patches.bounce();
+    total = patches.texel_total();
+    patches.bounce();
     result.bounces_made += batch;
     progress.advance(static_cast<uint64_t>(batch));
   }
 }
 
-// The accelerated iteration, until no texel is off by the tolerance either way. Where one is still, at the
-// end of it, the bounces made one by one count, which are less than the truth for certain.
-void converge(Flow& flow, const BounceOptions& options, Bounces& result, std::vector<double>& total) {
+// Converges by the solver until every texel is within the tolerance, either way. Texels that are not, at the
+// end of it, keep the sum of the bounces made one by one, which is certainly less than the truth.
+void converge(PatchBounces& patches, const BounceOptions& options, Bounces& result,
+              std::vector<double>& total) {
   const double tolerance = *options.converge_tolerance;
   if (worst_residual(total) < tolerance || result.bounces_made >= options.max_bounces) return;
   Progress progress("converging", static_cast<uint64_t>(options.max_bounces), "product");
-  // One bounce more is what the sum so far is short of, as the solver counts.
+  // The residual of the sum so far is one more bounce.
   std::vector<double> more;
-  apply_transport(flow.seen.bounce_matrix(), {}, flow.current, more);
+  apply_transport(patches.transport.bounce_matrix(), {}, patches.current, more);
   ++result.bounces_made;
-  Orthomin solver(flow.seen.bounce_matrix(), {}, std::move(flow.sum), std::move(more));
+  Orthomin solver(patches.transport.bounce_matrix(), {}, std::move(patches.sum), std::move(more));
   std::vector<double> solved;
   bool goes_on = true;
   while (goes_on) {
@@ -138,10 +137,10 @@ void converge(Flow& flow, const BounceOptions& options, Bounces& result, std::ve
       result.bounces_made += goes_on;
       progress.advance(goes_on);
     }
-    // A residual is at most twice the largest error: before that patches are off for certain.
+    // The residual is at most twice the largest error: above that patches are certainly off.
     if (goes_on && solver.largest_residual() > 2 * tolerance) continue;
-    solved = flow.gathered(solver.light());
-    goes_on = goes_on && worst_either_way(solved) >= tolerance;
+    solved = patches.final_gather(solver.light());
+    goes_on = goes_on && largest_deviation(solved) >= tolerance;
   }
   for (size_t i = 0; i < total.size(); ++i)
     if (std::abs(1 - solved[i]) < tolerance) total[i] = std::max(total[i], solved[i]);
@@ -165,36 +164,36 @@ void compute_residual(const std::function<double(size_t)>& total_over_pi, int wi
   result.mean_residual = residuals.mean;
 }
 
-Bounces bounce_light(const LightTransport& seen, const BounceOptions& options) {
-  const int width = seen.direct_over_pi.width, height = seen.direct_over_pi.height;
+Bounces bounce_light(const LightTransport& transport, const BounceOptions& options) {
+  const int width = transport.direct_over_pi.width, height = transport.direct_over_pi.height;
   Bounces result;
-  Flow flow(seen);
-  std::vector<double> total = flow.texel_direct, texel_light(total.size());
+  PatchBounces patches(transport);
+  std::vector<double> total = patches.texel_direct, texel_light(total.size());
   result.irradiance.push_back(times_pi(total, width, height));
 
   Progress progress("bouncing", static_cast<uint64_t>(options.bounces), "bounce");
   // Texel bounce b gathers patch bounce b − 1.
   for (int b = 1; b <= options.bounces; ++b) {
-    multiply(seen.final_gather, flow.current, texel_light);
+    multiply(transport.final_gather, patches.current, texel_light);
     add_to(total, texel_light);
     result.irradiance.push_back(times_pi(texel_light, width, height));
-    flow.bounce();
+    patches.bounce();
     progress.advance(1);
   }
   result.bounces_made = options.bounces;
 
   if (options.converge_tolerance) {
-    if (rows_sum_to_one(seen.final_gather, seen.direct_over_pi.values) &&
-        rows_sum_to_one(seen.bounce_matrix(), seen.patch_direct())) {
-      converge(flow, options, result, total);
+    if (rows_sum_to_one(transport.final_gather, transport.direct_over_pi.values) &&
+        rows_sum_to_one(transport.bounce_matrix(), transport.patch_direct())) {
+      converge(patches, options, result, total);
     } else {
-      converge_by_bounces(flow, options, result, total);
+      converge_by_bounces(patches, options, result, total);
     }
   }
 
   result.total = times_pi(total, width, height);
   compute_residual([&](size_t i) { return total[i]; }, width, height, result);
-  if (options.converge_tolerance) name_short_texels(seen, *options.converge_tolerance, result);
+  if (options.converge_tolerance) list_unconverged(transport, *options.converge_tolerance, result);
   return result;
 }
 

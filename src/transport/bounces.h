@@ -1,4 +1,4 @@
-// Light going round over the links, at albedo 1: E_{b+1} = W E_b between patches, gathered by the texels.
+// Sends light round at albedo 1: E_{b+1} = W E_b between patches, with a final gather at the texels.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +13,28 @@ namespace hemibake {
 
 struct BounceOptions {
   int bounces = 20;                          // stored one by one, 0..
-  std::optional<double> converge_tolerance;  // go on until no texel's residual is as large, either way
-  int max_bounces = 2000;                    // the end of that in any case, and products of its iteration
+  std::optional<double> converge_tolerance;  // if set: go on until every |residual| is below it
+  int max_bounces = 2000;                    // limit of bounces and of the solver's products
 };
 
 struct Bounces {
   std::vector<Grid<float>> irradiance;  // E_0 … E_bounces, 0..π
   Grid<float> total;                    // Σ of all bounces made, or converged, 0..π
-  // (π − Σ)/π still under way. Converged, it may be negative by less than the tolerance: the iteration comes
-  // near the sum from both sides. Texels it did not bring within the tolerance keep the sum of the bounces
-  // stored.
+  // (π − Σ)/π still under way. Converged, it may be negative by less than the tolerance: the solver comes
+  // near the sum from both sides. Unconverged texels keep the sum of the stored bounces.
   Grid<float> residual;
-  int bounces_made = 0;  // stored, and products of the patch links to converge
+  int bounces_made = 0;  // stored, and products of the patch form factors to converge
   double mean_residual = 0, worst_residual = 0;
   uint32_t worst_texel = 0;
-  // Only with a tolerance: texels whose residual is not below it, and those among them whose every link leads
-  // to themselves, so that no number of bounces would help.
+  // With a tolerance: texels whose residual is not below it, and those of them that see only themselves,
+  // which no number of bounces would help.
   std::vector<uint32_t> unconverged_texels, enclosed_texels;
 };
 
-Bounces bounce_light(const LightTransport& seen, const BounceOptions& options);
+// Bounces the light of a uniform sky. transport: with form factors.
+Bounces bounce_light(const LightTransport& transport, const BounceOptions& options);
 
-// The residual of every texel, their mean and the worst, from the sum of a texel's light over π.
+// Computes the residual of every texel, their mean and the worst. total_over_pi: Σ/π of a texel.
 void compute_residual(const std::function<double(size_t)>& total_over_pi, int width, int height,
                       Bounces& result);
 

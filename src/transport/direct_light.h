@@ -1,4 +1,4 @@
-// The light of no bounce at all: what bounce_light gives for it, in a few planes of memory.
+// Makes the result of bounce_light for no bounces, in a few planes of memory.
 #pragma once
 
 #include "transport/bounces.h"
@@ -6,7 +6,7 @@
 
 namespace hemibake {
 
-// E₀ of every texel as irradiance and total.
-Bounces direct_light(const LightTransport& seen);
+// Returns E₀ of every texel as irradiance and total. transport: form factors are not needed.
+Bounces direct_light(const LightTransport& transport);
 
 }  // namespace hemibake

@@ -13,12 +13,12 @@
 namespace hemibake {
 namespace {
 
-// Without links texels are traced in tiles: what a tile's receivers meet stays in the cache. They are as high
-// as leaves every thread enough to do.
+// Without form factors texels are traced in tiles: the surface around a tile stays in the cache. Tiles are as
+// high as leaves every thread enough to do.
 constexpr uint32_t kTileWidth = 128, kHighestTile = 128, kLowestTile = 16, kTilesPerThread = 4;
 
-// Blocks of patches are traced together, as many as leave every thread enough to do: the same node of many
-// facets sees along the same paths.
+// Blocks of patches traced together: the same node of many facets sees along the same paths. As many as leave
+// every thread enough to do.
 constexpr uint32_t kMostBlocksTogether = 32, kFewestPieces = 32;
 
 void check_row(uint32_t index, const Row& row) {
@@ -36,12 +36,13 @@ TracerCounts sum(const std::vector<TracerCounts>& counts) {
   return total;
 }
 
-// Traces rows [0, row_count), `together` blocks at once: neighbours that the tracer may answer together;
-// store(index, row) keeps what the caller wants of each.
+// Traces all rows of a matrix and packs them.
+// together: blocks traced at once, whose rows the tracer may share work among. trace_rows(first, rows,
+// counts): traces rows from `first` on. store(index, row): keeps the other results of a row.
 template <class TraceRows, class Store>
-TracerCounts trace_blocks(uint32_t row_count, uint32_t together, FormFactorMatrix& links, Progress& progress,
+TracerCounts trace_blocks(uint32_t together, FormFactorMatrix& form_factors, Progress& progress,
                           const TraceRows& trace_rows, const Store& store) {
-  const uint32_t rows_together = together * FormFactorMatrix::kRowsPerBlock;
+  const uint32_t row_count = form_factors.rows, rows_together = together * FormFactorMatrix::kRowsPerBlock;
   const size_t pieces = (size_t{row_count} + rows_together - 1) / rows_together;
   std::vector<TracerCounts> counts(pieces);
   parallel_for(pieces, 1, [&](size_t first_piece, size_t last_piece) {
@@ -54,9 +55,9 @@ TracerCounts trace_blocks(uint32_t row_count, uint32_t together, FormFactorMatri
         check_row(begin + i, piece_rows[i]);
         store(begin + i, piece_rows[i]);
         const size_t block = (begin + i) / FormFactorMatrix::kRowsPerBlock;
-        append_row(links.blocks[block], piece_rows[i].links);
+        append_row(form_factors.blocks[block], piece_rows[i].links);
         if ((begin + i + 1) % FormFactorMatrix::kRowsPerBlock == 0 || begin + i + 1 == row_count)
-          finish_block(links, block);
+          finish_block(form_factors, block);
       }
       progress.advance(piece_rows.size());
     }
@@ -72,7 +73,7 @@ uint32_t height_of_tiles(uint32_t columns, uint32_t height) {
   return tile_height;
 }
 
-// Traces every texel tile by tile; store(texel, row) keeps what the caller wants of each.
+// Traces every texel tile by tile. store(texel, row): keeps the results of a row.
 template <class Store>
 TracerCounts trace_tiles(const Tracer& tracer, Progress& progress, const Store& store) {
   const uint32_t width = static_cast<uint32_t>(tracer.surface().width());
@@ -104,51 +105,52 @@ TracerCounts trace_tiles(const Tracer& tracer, Progress& progress, const Store& 
 
 }  // namespace
 
-LightTransport trace_surface(const Tracer& tracer, bool with_links, const std::shared_ptr<SpillFile>& spill) {
+LightTransport trace_surface(const Tracer& tracer, bool with_form_factors,
+                             const std::shared_ptr<SpillFile>& spill) {
   const int width = tracer.surface().width(), height = tracer.surface().height();
-  LightTransport seen;
-  seen.visible_fraction = Grid<float>(width, height);
-  seen.direct_over_pi = Grid<float>(width, height);
-  seen.bent_normals = Grid<glm::vec3>(width, height);
-  const uint32_t texels = static_cast<uint32_t>(seen.visible_fraction.size());
-  const bool trace_patches = with_links && tracer.patch_set().kind == PatchKind::kFacets;
+  LightTransport transport;
+  transport.visible_fraction = Grid<float>(width, height);
+  transport.direct_over_pi = Grid<float>(width, height);
+  transport.bent_normals = Grid<glm::vec3>(width, height);
+  const uint32_t texels = static_cast<uint32_t>(transport.visible_fraction.size());
+  const bool trace_patches = with_form_factors && tracer.patch_set().kind == PatchKind::kFacets;
 
   const uint32_t patch_count = tracer.patch_set().count;
   Progress progress("tracing", uint64_t{texels} + (trace_patches ? patch_count : 0), "receiver");
 
   const auto store_texel = [&](uint32_t texel, const Row& row) {
-    seen.visible_fraction[texel] = static_cast<float>(row.visible_fraction);
-    seen.direct_over_pi[texel] = static_cast<float>(row.direct_over_pi);
-    seen.bent_normals[texel] = glm::vec3(row.bent_normal);
+    transport.visible_fraction[texel] = static_cast<float>(row.visible_fraction);
+    transport.direct_over_pi[texel] = static_cast<float>(row.direct_over_pi);
+    transport.bent_normals[texel] = glm::vec3(row.bent_normal);
   };
-  if (!with_links) {
-    seen.counts = trace_tiles(tracer, progress, store_texel);
-    return seen;
+  if (!with_form_factors) {
+    transport.counts = trace_tiles(tracer, progress, store_texel);
+    return transport;
   }
-  seen.final_gather = make_form_factors(texels, patch_count, spill);
-  seen.counts = trace_blocks(
-      texels, 1, seen.final_gather, progress,
+  transport.final_gather = make_form_factors(texels, patch_count, spill);
+  transport.counts = trace_blocks(
+      1, transport.final_gather, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_texels(first, true, rows, counts);
       },
       store_texel);
-  if (!trace_patches) return seen;
+  if (!trace_patches) return transport;
 
   const uint32_t blocks = patch_count / FormFactorMatrix::kRowsPerBlock;
   const uint32_t together = std::clamp(blocks / kFewestPieces, 1u, kMostBlocksTogether);
-  seen.patch_form_factors = make_form_factors(patch_count, patch_count, spill);
-  seen.patch_direct_over_pi.resize(patch_count);
+  transport.patch_form_factors = make_form_factors(patch_count, patch_count, spill);
+  transport.patch_direct_over_pi.resize(patch_count);
   const TracerCounts of_patches = trace_blocks(
-      patch_count, together, seen.patch_form_factors, progress,
+      together, transport.patch_form_factors, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_patches(first, true, rows, counts);
       },
       [&](uint32_t patch, const Row& row) {
-        seen.patch_direct_over_pi[patch] = static_cast<float>(row.direct_over_pi);
+        transport.patch_direct_over_pi[patch] = static_cast<float>(row.direct_over_pi);
       });
-  seen.counts.rays += of_patches.rays;
-  seen.counts.truncated += of_patches.truncated;
-  return seen;
+  transport.counts.rays += of_patches.rays;
+  transport.counts.truncated += of_patches.truncated;
+  return transport;
 }
 
 }  // namespace hemibake

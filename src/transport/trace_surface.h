@@ -11,30 +11,31 @@
 
 namespace hemibake {
 
-// What the surface sees before any light is bounced.
+// Visibility, direct light and form factors of a surface.
 struct LightTransport {
   Grid<float> visible_fraction;   // α per texel
   Grid<float> direct_over_pi;     // E₀/π per texel
   Grid<glm::vec3> bent_normals;   // per texel, unit
-  FormFactorMatrix final_gather;  // texel × patch; empty where form factors were not asked for
-  FormFactorMatrix
-      patch_form_factors;  // patch × patch; empty where patches are texels: the same as final_gather
-  std::vector<float> patch_direct_over_pi;  // E₀/π per patch; empty where patches are texels or without links
+  FormFactorMatrix final_gather;  // texel × patch; empty without form factors
+  // patch × patch; empty if patches are texels (then final_gather serves for both) and without form factors
+  FormFactorMatrix patch_form_factors;
+  std::vector<float> patch_direct_over_pi;  // E₀/π per patch; empty as patch_form_factors
   TracerCounts counts;
 
-  // The matrix of one bounce.
+  // Returns the matrix of one bounce: patch × patch.
   const FormFactorMatrix& bounce_matrix() const {
     return patch_form_factors.empty() ? final_gather : patch_form_factors;
   }
+  // Returns E₀/π of every patch.
   const std::vector<float>& patch_direct() const {
     return patch_direct_over_pi.empty() ? direct_over_pi.values : patch_direct_over_pi;
   }
 };
 
-// Traces every texel, and every patch if `with_links`: only then are form factors kept. The same bytes at any
-// thread count. spill: where form factors go that memory does not hold; none: they stay in memory. Throws
-// Interrupted between blocks of rows.
-LightTransport trace_surface(const Tracer& tracer, bool with_links,
+// Traces every texel, and every patch if `with_form_factors`: only then are these kept. The same bytes at any
+// thread count. Throws Interrupted between blocks of rows. spill: file that form factors go to; none: they
+// stay in memory.
+LightTransport trace_surface(const Tracer& tracer, bool with_form_factors,
                              const std::shared_ptr<SpillFile>& spill = nullptr);
 
 }  // namespace hemibake

@@ -1,4 +1,4 @@
-// Surfaces whose light is known (FACTS.md §6), through the whole pipeline: map, surface, Embree, links,
+// Tests surfaces whose light is known, through the whole pipeline: map, surface, Embree, links,
 // bounces.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace hemibake {
 namespace {
 
 struct Traced {
-  LightTransport seen;
+  LightTransport transport;
   Bounces bounces;
 };
 
@@ -32,16 +32,17 @@ Traced trace_light(const Surface& surface, PatchKind patches, int rays, int boun
   options.patch_kind = patches;
   const auto tracer = make_embree_tracer(surface, options);
   Traced traced{trace_surface(*tracer, true), {}};
-  traced.bounces = bounce_light(traced.seen, {bounces, std::nullopt, bounces});
+  traced.bounces = bounce_light(traced.transport, {bounces, std::nullopt, bounces});
   return traced;
 }
 
 // E_b/π of the patches, b = 0…bounces.
-std::vector<std::vector<double>> patch_light(const LightTransport& seen, int bounces) {
-  std::vector<std::vector<double>> light = {{seen.patch_direct().begin(), seen.patch_direct().end()}};
+std::vector<std::vector<double>> patch_light(const LightTransport& transport, int bounces) {
+  std::vector<std::vector<double>> light = {
+      {transport.patch_direct().begin(), transport.patch_direct().end()}};
   for (int b = 0; b < bounces; ++b) {
     light.emplace_back(light.back().size());
-    multiply(seen.bounce_matrix(), light[static_cast<size_t>(b)], light.back());
+    multiply(transport.bounce_matrix(), light[static_cast<size_t>(b)], light.back());
   }
   return light;
 }
@@ -127,7 +128,7 @@ class Groove : public testing::TestWithParam<GrooveCase> {
 
 TEST_P(Groove, WallMeansOfFacets) {
   const Traced traced = trace_light(surface_, PatchKind::kFacets, kRays, 4);
-  const auto light = patch_light(traced.seen, 4);
+  const auto light = patch_light(traced.transport, 4);
   const PatchSet patches = make_patches(surface_, PatchKind::kFacets);
   for (size_t b = 0; b < 5; ++b) {
     const double expected = GetParam().wall_means[b];
@@ -156,10 +157,10 @@ TEST_P(Groove, TexelsAcrossTheWall) {
     const double f = (length * std::cos(2 * angle_) - s) /
                      std::sqrt(length * length + s * s - 2 * length * s * std::cos(2 * angle_));
     const size_t texel = surface_.heights_m.index(i, 1);
-    // One edge crosses the hemisphere: N^(−3/4) (FACTS.md §6), four of it.
+    // One edge crosses the hemisphere: N^(−3/4), four of it.
     const double tolerance = 4 * std::pow(kRays, -0.75);
-    EXPECT_NEAR(traced.seen.visible_fraction[texel], std::acos(f) / kPi, tolerance) << "texel " << i;
-    EXPECT_NEAR(traced.seen.direct_over_pi[texel], (1 - f) / 2, tolerance) << "texel " << i;
+    EXPECT_NEAR(traced.transport.visible_fraction[texel], std::acos(f) / kPi, tolerance) << "texel " << i;
+    EXPECT_NEAR(traced.transport.direct_over_pi[texel], (1 - f) / 2, tolerance) << "texel " << i;
   }
 }
 INSTANTIATE_TEST_SUITE_P(Angles, Groove,

@@ -9,7 +9,7 @@ namespace hemibake {
 // Means of E_b/π over a wall, albedo 1, b = 0 … bounces, of a groove with half-angle `psi`. The other wall
 // sends a point at distance s from the vertex the share ½ s s' sin²2ψ / (s² + s'² − 2 s s' cos2ψ)^1.5 ds' of
 // its light. With s = e^−x (wall length 1) the kernel depends on x − y only and is smooth; trapezoids of
-// 1/200 up to x = 20 reproduce the digits of FACTS.md §6 to 2·10⁻⁶.
+// 1/200 up to x = 20 reproduce the digits of two independent quadratures to 2·10⁻⁶.
 inline std::vector<double> groove_wall_means(double psi, int bounces) {
   constexpr int kPoints = 4000;
   constexpr double kStep = 20.0 / kPoints;

@@ -65,7 +65,7 @@ double row_sum_error(const Rows& rows, const FormFactorMatrix& links) {
 
 // All that the tracer sees.
 struct Scene {
-  Rows final_gather, patches;
+  Rows final_gather, patch_form_factors;
   std::vector<double> direct;  // of the patches
 };
 
@@ -110,8 +110,8 @@ Scene trace_scene(const Tracer& tracer, uint32_t texels) {
 }
 
 // All bounced light of the texels at an albedo, over π, of either kind of rows.
-template <class PatchKind, class Gather>
-std::vector<double> bounced(const Scene& scene, double albedo, const PatchKind& patches,
+template <class Patches, class Gather>
+std::vector<double> bounced(const Scene& scene, double albedo, const Patches& patches,
                             const Gather& gather_in) {
   std::vector<double> light = scene.direct, sum = light, next, texels;
   for (int b = 1; b < kBounces; ++b) {

@@ -335,8 +335,8 @@ TEST(DiskLight, IsThePapersTransfer) {
   }
 }
 
-// Wall means of a tiled 45° groove at ρ = 1 (FACTS.md §6). E_0 is given exactly; the far walls that the
-// tiling hides send too much without a shadow pass, so the error is printed for both.
+// Wall means of a tiled 45° groove at ρ = 1 (tests/analytic/groove_reference.h). E_0 is given exactly; the
+// far walls that the tiling hides send too much without a shadow pass, so the error is printed for both.
 TEST(DiskLight, GrooveBouncesComeNearTheClosedForm) {
   const Surface surface = synthetic_surface(SyntheticKind::kGroove, 64, 64, {}, kPi / 4);
   const GrooveGeometry groove = groove_geometry(64, kPi / 4);

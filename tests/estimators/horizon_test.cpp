@@ -46,7 +46,7 @@ TEST(Horizon, TiltedNormalsLoseWhatLiesBelow) {
               1e-4);
 }
 
-// Worst error over the floor's or wall's texels against the closed forms of FACTS.md §6.
+// Returns the worst error over the floor's or wall's texels against the closed form.
 double canyon_error(int azimuths, int steps, AoKind kind) {
   const Surface surface = synthetic_surface(SyntheticKind::kCanyon, 64, 1, 16.0 / 64);
   const WallGeometry walls = canyon_geometry(64);

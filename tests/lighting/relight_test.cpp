@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/constants.h"
-#include "lighting/scene.h"
+#include "lighting/shaded_scene.h"
 #include "support/maps.h"
 #include "tracers/embree/embree.h"
 #include "transport/bounces.h"
@@ -17,25 +17,25 @@ namespace {
 
 // Two texels that are patches and see each other and the sky.
 LightTransport two_patches(double to_second, double to_first) {
-  LightTransport seen;
-  seen.direct_over_pi = Grid<float>(2, 1);
-  seen.direct_over_pi[0] = static_cast<float>(1 - to_second);
-  seen.direct_over_pi[1] = static_cast<float>(1 - to_first);
-  seen.final_gather = make_form_factors(2, 2);
+  LightTransport transport;
+  transport.direct_over_pi = Grid<float>(2, 1);
+  transport.direct_over_pi[0] = static_cast<float>(1 - to_second);
+  transport.direct_over_pi[1] = static_cast<float>(1 - to_first);
+  transport.final_gather = make_form_factors(2, 2);
   const FormFactor first{1, static_cast<float>(to_second)}, second{0, static_cast<float>(to_first)};
-  append_row(seen.final_gather.blocks[0], {&first, 1});
-  append_row(seen.final_gather.blocks[0], {&second, 1});
-  finish_blocks(seen.final_gather);
-  return seen;
+  append_row(transport.final_gather.blocks[0], {&first, 1});
+  append_row(transport.final_gather.blocks[0], {&second, 1});
+  finish_blocks(transport.final_gather);
+  return transport;
 }
 
 // E₁ = e₁ + w₁₂ ρ₂ E₂ and E₂ = e₂ + w₂₁ ρ₁ E₁, each with its neighbour's albedo.
 TEST(Relight, TwoPatchesWithTheirOwnAlbedo) {
-  const LightTransport seen = two_patches(0.75, 0.5);
+  const LightTransport transport = two_patches(0.75, 0.5);
   const ColoredLight direct{{glm::dvec3(1, 2, 0), glm::dvec3(3, 0, 0)},
                             {glm::dvec3(1, 2, 0), glm::dvec3(3, 0, 0)}};
   const std::vector<glm::vec3> albedo = {{0.5f, 0.25f, 1}, {0.25f, 1, 1}};
-  const Relit relit = relight_over_links(seen, direct, albedo, 60);
+  const Relit relit = relight_by_transport(transport, direct, albedo, 60);
   for (int c = 0; c < 3; ++c) {
     const double a = 0.75 * static_cast<double>(albedo[1][c]), b = 0.5 * static_cast<double>(albedo[0][c]);
     const double e1 = direct.texel_light[0][c], e2 = direct.texel_light[1][c];
@@ -45,13 +45,13 @@ TEST(Relight, TwoPatchesWithTheirOwnAlbedo) {
   EXPECT_FLOAT_EQ(relit.bounces[1][0].x, 0.75f * 0.25f * 3);
 }
 
-class RelightWall : public testing::Test {
+class RelightBricks : public testing::Test {
  protected:
   static const Surface& surface() {
     static const Surface map = synthetic_surface(SyntheticKind::kBricks, 24, 20, 0.1);
     return map;
   }
-  static const LightTransport& seen() {
+  static const LightTransport& transport() {
     static const LightTransport traced = [] {
       RayOptions options;
       options.rays = 64;
@@ -62,9 +62,9 @@ class RelightWall : public testing::Test {
   }
   static ColoredLight uniform_light() {
     ColoredLight light;
-    for (const float direct : seen().direct_over_pi.values)
+    for (const float direct : transport().direct_over_pi.values)
       light.texel_light.emplace_back(kPi * static_cast<double>(direct));
-    for (const float direct : seen().patch_direct())
+    for (const float direct : transport().patch_direct())
       light.patch_light.emplace_back(kPi * static_cast<double>(direct));
     return light;
   }
@@ -72,13 +72,13 @@ class RelightWall : public testing::Test {
 
 // The bar: a map of one value against ρᵇ E_b. Bounces are stored as floats, and every product rounds to float
 // what it multiplies: 2⁻²⁴ of each; below the smallest normal one they are 0.
-TEST_F(RelightWall, ConstantMapIsPowersOfAlbedo) {
+TEST_F(RelightBricks, ConstantMapIsPowersOfAlbedo) {
   const glm::vec3 albedo(0.9f, 0.6f, 0);
-  const Relit powers = relight_constant(bounce_light(seen(), {}).irradiance, albedo);
+  const Relit powers = relight_constant(bounce_light(transport(), {}).irradiance, albedo);
   const Albedo map{glm::vec3(0), Grid<glm::vec3>(24, 20, albedo)};
-  const Relit over_links = relight_over_links(
-      seen(), uniform_light(), albedo_of_patches(surface(), map, make_patches(surface(), PatchKind::kFacets)),
-      20, kPi);
+  const Relit over_links = relight_by_transport(
+      transport(), uniform_light(),
+      albedo_of_patches(surface(), map, make_patches(surface(), PatchKind::kFacets)), 20, kPi);
   ASSERT_EQ(powers.bounces.size(), over_links.bounces.size());
   for (size_t b = 0; b < powers.bounces.size(); ++b)
     for (size_t i = 0; i < powers.total.size(); ++i)
@@ -92,17 +92,18 @@ TEST_F(RelightWall, ConstantMapIsPowersOfAlbedo) {
     for (int c = 0; c < 3; ++c) ASSERT_NEAR(over_links.total[i][c], powers.total[i][c], 2e-6);
 }
 
-TEST_F(RelightWall, BlackWallReflectsNothing) {
-  const Relit relit = relight_over_links(
-      seen(), uniform_light(), std::vector<glm::vec3>(seen().final_gather.columns, glm::vec3(0)), 3);
+TEST_F(RelightBricks, BlackWallReflectsNothing) {
+  const Relit relit =
+      relight_by_transport(transport(), uniform_light(),
+                           std::vector<glm::vec3>(transport().final_gather.columns, glm::vec3(0)), 3);
   for (size_t i = 0; i < relit.total.size(); ++i) EXPECT_EQ(relit.total[i], relit.bounces[0][i]);
   EXPECT_EQ(relit.largest_rest, 0);
 }
 
 // At albedo 1 all light comes out: π in every texel, whatever the map; the series knows the rest after 20
 // bounces.
-TEST_F(RelightWall, WhiteWallGivesPi) {
-  const Relit relit = relight_constant(bounce_light(seen(), {}).irradiance, glm::vec3(1));
+TEST_F(RelightBricks, WhiteWallGivesPi) {
+  const Relit relit = relight_constant(bounce_light(transport(), {}).irradiance, glm::vec3(1));
   double mean = 0;
   for (const glm::vec3& total : relit.total.values) {
     EXPECT_LE(total.x, static_cast<float>(kPi) * (1 + 1e-6f));
@@ -150,20 +151,20 @@ TEST(Relight, PatchesHaveTheAlbedoBetweenTheTexels) {
 
 // AO darkens the sky's light only: a sun adds the same to every picture.
 TEST(ShadedScene, NoAoDarkensTheSun) {
-  ShadedScene wall;
-  wall.bake.width = 3;
-  wall.bake.height = 1;
-  wall.bake.visible_fraction = Grid<float>(3, 1);
-  for (size_t i = 0; i < 3; ++i) wall.bake.visible_fraction[i] = 0.5f * static_cast<float>(i);
-  wall.albedo.constant = {0.5f, 0.25f, 1};
-  wall.sky = Grid<glm::vec3>(3, 1, glm::vec3(2));
+  ShadedScene scene;
+  scene.bake.width = 3;
+  scene.bake.height = 1;
+  scene.bake.visible_fraction = Grid<float>(3, 1);
+  for (size_t i = 0; i < 3; ++i) scene.bake.visible_fraction[i] = 0.5f * static_cast<float>(i);
+  scene.albedo.constant = {0.5f, 0.25f, 1};
+  scene.sky = Grid<glm::vec3>(3, 1, glm::vec3(2));
   const auto half = [](double ao, double albedo) { return ao * albedo; };
-  const Grid<glm::vec3> ao_before = shade_ao_only(wall), model_before = shade_with(wall, half);
-  wall.sun = Grid<glm::vec3>(3, 1, glm::vec3(4));
-  const Grid<glm::vec3> ao_after = shade_ao_only(wall), model_after = shade_with(wall, half);
+  const Grid<glm::vec3> ao_before = shade_ao_only(scene), model_before = shade_with(scene, half);
+  scene.sun = Grid<glm::vec3>(3, 1, glm::vec3(4));
+  const Grid<glm::vec3> ao_after = shade_ao_only(scene), model_after = shade_with(scene, half);
   for (size_t i = 0; i < 3; ++i)
     for (int c = 0; c < 3; ++c) {
-      const double sun = static_cast<double>(wall.albedo.constant[c]) * 4 / kPi;
+      const double sun = static_cast<double>(scene.albedo.constant[c]) * 4 / kPi;
       EXPECT_NEAR(ao_after[i][c] - ao_before[i][c], sun, 2e-7);
       EXPECT_NEAR(model_after[i][c] - model_before[i][c], sun, 2e-7);
     }

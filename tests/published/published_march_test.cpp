@@ -49,14 +49,14 @@ class PublishedMarch : public testing::Test {
     Surface surface = make_surface(std::move(filtered), 1, kAmplitude, Edge::kWrap);
     surface.normals = decode_normal_map(encoded_normals_, NormalY::kUp);
     const auto tracer = make_march_tracer(surface, options);
-    const LightTransport seen = trace_surface(*tracer, true);
+    const LightTransport transport = trace_surface(*tracer, true);
     BounceOptions bounces;
     bounces.bounces = kBounces;
     Bake bake;
     bake.width = surface.width();
     bake.height = surface.height();
-    bake.visible_fraction = seen.visible_fraction;
-    bake.irradiance = bounce_light(seen, bounces).irradiance;
+    bake.visible_fraction = transport.visible_fraction;
+    bake.irradiance = bounce_light(transport, bounces).irradiance;
     return make_curves(bake, 100);
   }
 

@@ -22,9 +22,16 @@ Surface make_noise() {
   return make_surface(map.heights, 1, map.recommended_amplitude_m, Edge::kWrap);
 }
 
-// A bake as right as can be: measured by the referee itself, with another seed.
-const Bake& right_bake() {
-  static const Bake bake = [] {
+struct Planes {
+  Grid<float> ao;
+  std::vector<Grid<float>> irradiance;
+
+  operator JudgedLight() const { return {ao, irradiance}; }
+};
+
+// Light as right as can be: measured by the path tracer itself, with another seed.
+const Planes& right_bake() {
+  static const Planes bake = [] {
     const Surface surface = make_noise();
     std::vector<uint32_t> texels(surface.texel_count());
     std::iota(texels.begin(), texels.end(), 0u);
@@ -34,16 +41,15 @@ const Bake& right_bake() {
     options.totals.clear();
     options.seed = 1234;
     const RefereeEstimates measured = referee_texels(surface, texels, options);
-    Bake made;
-    made.width = made.height = kWidth;
-    made.visible_fraction = Grid<float>(kWidth, kWidth);
+    Planes made;
+    made.ao = Grid<float>(kWidth, kWidth);
     for (int b = 0; b <= kBounces; ++b) {
       made.irradiance.emplace_back(kWidth, kWidth);
       for (uint32_t i : texels)
         made.irradiance.back()[i] = static_cast<float>(kPi * measured.mean[measured.index(i, b)]);
     }
     // The bins only need something that orders texels by darkness.
-    for (uint32_t i : texels) made.visible_fraction[i] = made.irradiance[0][i] / static_cast<float>(kPi);
+    for (uint32_t i : texels) made.ao[i] = made.irradiance[0][i] / static_cast<float>(kPi);
     return made;
   }();
   return bake;
@@ -79,7 +85,7 @@ TEST(RefereeCheck, ARightBakePasses) {
 }
 
 TEST(RefereeCheck, AWrongBounceIsFoundAndNamed) {
-  Bake bake = right_bake();
+  Planes bake = right_bake();
   for (float& value : bake.irradiance[1].values) value *= 1.05f;
   const RefereeCheck check = check_against_referee(make_noise(), bake, long_check());
   const RefereeRow& wrong = row_of(check.means, "E1");
@@ -91,7 +97,7 @@ TEST(RefereeCheck, AWrongBounceIsFoundAndNamed) {
 }
 
 TEST(RefereeCheck, ErrorsThatCancelShowInTheRms) {
-  Bake bake = right_bake();
+  Planes bake = right_bake();
   for (size_t i = 0; i < bake.irradiance[0].size(); ++i) bake.irradiance[0][i] += i % 2 == 0 ? 0.1f : -0.1f;
   const RefereeRow row = row_of(check_against_referee(make_noise(), bake, long_check()).means, "E0");
   EXPECT_EQ(row.verdict, RefereeVerdict::kWithin);
@@ -101,10 +107,10 @@ TEST(RefereeCheck, ErrorsThatCancelShowInTheRms) {
 // Rays that by chance meet more sky raise α and E₀ of a texel and lower its E₁: no texel is wrong on average,
 // and no bin may say so, though bins of the bake's own AO would.
 TEST(RefereeCheck, NoiseThatMovesTexelsBetweenBinsIsNoError) {
-  Bake bake = right_bake();
+  Planes bake = right_bake();
   for (size_t i = 0; i < bake.irradiance[0].size(); ++i) {
     const float noise = i % 2 == 0 ? 0.05f : -0.05f;
-    bake.visible_fraction[i] += noise;
+    bake.ao[i] += noise;
     bake.irradiance[0][i] += noise * static_cast<float>(kPi);
     bake.irradiance[1][i] -= noise * static_cast<float>(kPi);
   }
@@ -156,8 +162,8 @@ TEST(RefereeCheck, RefusesWhatDoesNotFit) {
   options = {};
   options.confidence = 1;
   EXPECT_THROW(check_against_referee(surface, right_bake(), options), InputError);
-  Bake bake = right_bake();
-  bake.visible_fraction = {};
+  Planes bake = right_bake();
+  bake.ao = {};
   EXPECT_THROW(check_against_referee(surface, bake, {}), InputError);
 }
 

@@ -50,18 +50,19 @@ NearestHit brute_force(const Surface& surface, const glm::dvec3& start, const gl
 
 // Rays from random points on the surface in all directions, against brute force.
 void compare_with_brute_force(const Surface& surface, int tiles) {
-  const HeightFieldRayCaster walk(surface);
+  const HeightFieldRayCaster caster(surface);
   RefereeRandom random(3, 1, 4);
   int hits = 0;
   for (int i = 0; i < 1000; ++i) {
-    const uint32_t facet = random.below(walk.facet_count());
-    SurfacePoint at = walk.point_on_facet(facet, 0.1 + 0.3 * random.uniform(), 0.1 + 0.3 * random.uniform());
+    const uint32_t facet = random.below(caster.facet_count());
+    SurfacePoint at =
+        caster.point_on_facet(facet, 0.1 + 0.3 * random.uniform(), 0.1 + 0.3 * random.uniform());
     ASSERT_LT(glm::length(at.normal - facet_normal(surface, facet)), 1e-6);
     at.position.z += 1e-3;
     const glm::dvec3 direction = random_cosine_direction({0, 0, i % 2 == 0 ? 1 : 0.01}, random);
     const NearestHit expected = brute_force(surface, at.position, direction, tiles);
     SurfacePoint hit;
-    const RayOutcome end = walk.follow(at.position, direction, hit);
+    const RayOutcome end = caster.cast(at.position, direction, hit);
     ASSERT_EQ(end == RayOutcome::kHit, std::isfinite(expected.distance)) << "ray " << i;
     if (end != RayOutcome::kHit) continue;
     ++hits;
@@ -94,10 +95,10 @@ TEST(HeightFieldRayCaster, FindsWhatIsManyTilesAway) {
   Grid<float> heights(16, 1);
   heights(8, 0) = 1;
   const Surface surface = make_surface(heights, 16, 10, Edge::kWrap);  // texel 1 m, walls 10 m
-  const HeightFieldRayCaster walk(surface);
+  const HeightFieldRayCaster caster(surface);
   SurfacePoint hit;
   const double run = 16 * 300.0;
-  ASSERT_EQ(walk.follow({0.5, 0.25, 14}, glm::normalize(glm::dvec3(run, 0, -4)), hit), RayOutcome::kHit);
+  ASSERT_EQ(caster.cast({0.5, 0.25, 14}, glm::normalize(glm::dvec3(run, 0, -4)), hit), RayOutcome::kHit);
   EXPECT_NEAR(hit.position.x, 8, 1.0);
   EXPECT_NEAR(hit.position.z, 10, 0.1);
   EXPECT_EQ(hit.position.y, 0.25);
@@ -105,32 +106,32 @@ TEST(HeightFieldRayCaster, FindsWhatIsManyTilesAway) {
 
 TEST(HeightFieldRayCaster, VerticalAndHorizontalRaysEnd) {
   const Surface surface = random_surface(9, 7, 3, Edge::kWrap, 4);
-  const HeightFieldRayCaster walk(surface);
+  const HeightFieldRayCaster caster(surface);
   SurfacePoint hit;
-  EXPECT_EQ(walk.follow({2, 3, 5}, {0, 0, 1}, hit), RayOutcome::kEscaped);
-  EXPECT_EQ(walk.follow({2.25, 3.5, 5}, {0, 0, -1}, hit), RayOutcome::kHit);
+  EXPECT_EQ(caster.cast({2, 3, 5}, {0, 0, 1}, hit), RayOutcome::kEscaped);
+  EXPECT_EQ(caster.cast({2.25, 3.5, 5}, {0, 0, -1}, hit), RayOutcome::kHit);
   EXPECT_EQ(hit.position.x, 2.25);
   EXPECT_EQ(hit.position.y, 3.5);
-  EXPECT_EQ(walk.follow({2, 3, 5}, {1, 0, 0}, hit), RayOutcome::kEscaped);
+  EXPECT_EQ(caster.cast({2, 3, 5}, {1, 0, 0}, hit), RayOutcome::kEscaped);
   // On the far edge of the map, along it.
-  EXPECT_EQ(walk.follow({9, 3.5, 2.9}, glm::normalize(glm::dvec3(0, 1, 0.1)), hit), RayOutcome::kEscaped);
-  EXPECT_EQ(walk.follow({9, 7, 5}, {0, 0, -1}, hit), RayOutcome::kHit);
+  EXPECT_EQ(caster.cast({9, 3.5, 2.9}, glm::normalize(glm::dvec3(0, 1, 0.1)), hit), RayOutcome::kEscaped);
+  EXPECT_EQ(caster.cast({9, 7, 5}, {0, 0, -1}, hit), RayOutcome::kHit);
 }
 
-TEST(HeightFieldRayCaster, HorizontalRayInAnEndlessTrenchIsLost) {
+TEST(HeightFieldRayCaster, HorizontalRayInAnEndlessTrenchIsTruncated) {
   Grid<float> heights(4, 4);
   for (int y = 0; y < 4; ++y) heights(0, y) = 1;
   const Surface surface = make_surface(heights, 4, 1, Edge::kWrap);
   SurfacePoint hit;
-  EXPECT_EQ(HeightFieldRayCaster(surface).follow({2, 0, 0.5}, {0, 1, 0}, hit), RayOutcome::kTruncated);
+  EXPECT_EQ(HeightFieldRayCaster(surface).cast({2, 0, 0.5}, {0, 1, 0}, hit), RayOutcome::kTruncated);
 }
 
 TEST(HeightFieldRayCaster, OneTexelIsAPlane) {
   const Surface surface = make_surface(Grid<float>(1, 1, 0.5f), 1, 1, Edge::kWrap);
   SurfacePoint hit;
-  EXPECT_EQ(HeightFieldRayCaster(surface).follow({0, 0, 0}, glm::normalize(glm::dvec3(1, 0, 1e-9)), hit),
+  EXPECT_EQ(HeightFieldRayCaster(surface).cast({0, 0, 0}, glm::normalize(glm::dvec3(1, 0, 1e-9)), hit),
             RayOutcome::kEscaped);
-  ASSERT_EQ(HeightFieldRayCaster(surface).follow({0, 0, 0.5}, glm::normalize(glm::dvec3(1, 1, -0.1)), hit),
+  ASSERT_EQ(HeightFieldRayCaster(surface).cast({0, 0, 0.5}, glm::normalize(glm::dvec3(1, 1, -0.1)), hit),
             RayOutcome::kHit);
   EXPECT_NEAR(hit.position.z, 0, 1e-12);
   EXPECT_EQ(hit.normal, glm::dvec3(0, 0, 1));

@@ -16,14 +16,14 @@ namespace {
 
 // Two texels that see each other: E₀/π = c, the rest goes to the other.
 LightTransport two_texels(float c) {
-  LightTransport seen;
-  seen.visible_fraction = Grid<float>(2, 1, c);
-  seen.direct_over_pi = Grid<float>(2, 1, c);
-  seen.final_gather = make_form_factors(2, 2);
+  LightTransport transport;
+  transport.visible_fraction = Grid<float>(2, 1, c);
+  transport.direct_over_pi = Grid<float>(2, 1, c);
+  transport.final_gather = make_form_factors(2, 2);
   for (uint32_t i = 0; i < 2; ++i)
-    append_row(seen.final_gather.blocks[0], std::vector<FormFactor>{{1 - i, 1 - c}});
-  finish_blocks(seen.final_gather);
-  return seen;
+    append_row(transport.final_gather.blocks[0], std::vector<FormFactor>{{1 - i, 1 - c}});
+  finish_blocks(transport.final_gather);
+  return transport;
 }
 
 TEST(Bounces, TwoTexelsAreAGeometricSeries) {
@@ -48,16 +48,16 @@ TEST(Bounces, ConvergenceGoesOnUntilTheToleranceAndNoFurther) {
 }
 
 TEST(Bounces, TheCapEndsItAndNamesWhatIsShort) {
-  LightTransport seen = two_texels(0.25f);
-  seen.direct_over_pi[1] = 0;
-  seen.final_gather = make_form_factors(2, 2);
-  append_row(seen.final_gather.blocks[0], std::vector<FormFactor>{{1, 0.75f}});
-  append_row(seen.final_gather.blocks[0], std::vector<FormFactor>{{1, 1.0f}});  // sees only itself
-  finish_blocks(seen.final_gather);
+  LightTransport transport = two_texels(0.25f);
+  transport.direct_over_pi[1] = 0;
+  transport.final_gather = make_form_factors(2, 2);
+  append_row(transport.final_gather.blocks[0], std::vector<FormFactor>{{1, 0.75f}});
+  append_row(transport.final_gather.blocks[0], std::vector<FormFactor>{{1, 1.0f}});  // sees only itself
+  finish_blocks(transport.final_gather);
   BounceOptions options;
   options.converge_tolerance = 1e-6;
   options.max_bounces = 50;
-  const Bounces bounces = bounce_light(seen, options);
+  const Bounces bounces = bounce_light(transport, options);
   EXPECT_LE(bounces.bounces_made, 50);
   EXPECT_EQ(bounces.unconverged_texels, (std::vector<uint32_t>{0, 1}));
   EXPECT_EQ(bounces.enclosed_texels, (std::vector<uint32_t>{1}));
@@ -127,17 +127,17 @@ double mean_product(const Surface& surface, const PatchSet& patches, const std::
 // bounce on this map, whose slopes turn by as much as 10° from texel to texel).
 TEST(Bounces, LightThatStaysIsLightThatComesBack) {
   const Surface surface = synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.2);
-  const LightTransport seen = see(surface, PatchKind::kFacets, 256);
+  const LightTransport transport = see(surface, PatchKind::kFacets, 256);
   // Of other rays, so that the noise of a node is not multiplied by itself.
   const LightTransport again = see(surface, PatchKind::kFacets, 256, 1);
   const PatchSet patches = make_patches(surface, PatchKind::kFacets);
-  std::vector<double> light(seen.patch_direct_over_pi.begin(), seen.patch_direct_over_pi.end()),
+  std::vector<double> light(transport.patch_direct_over_pi.begin(), transport.patch_direct_over_pi.end()),
       next(light.size());
   std::vector<double> ones(light.size(), 1), blocked(light.size());
   for (size_t i = 0; i < light.size(); ++i)
     blocked[i] = 1 - static_cast<double>(again.patch_direct_over_pi[i]);
   for (int bounce = 0; bounce < 4; ++bounce) {
-    multiply(seen.patch_form_factors, light, next);
+    multiply(transport.patch_form_factors, light, next);
     EXPECT_NEAR(mean_product(surface, patches, next, ones) / mean_product(surface, patches, light, blocked),
                 1, 1e-2);
     light = next;
@@ -148,8 +148,8 @@ TEST(Bounces, SameBytesAtAnyThreadCount) {
   const Surface surface = white_noise_surface(80, 64, 0.1);
   const auto run = [&](int threads) {
     set_thread_count(threads);
-    const LightTransport seen = see(surface, PatchKind::kFacets, 64);
-    return bounce_light(seen, {});
+    const LightTransport transport = see(surface, PatchKind::kFacets, 64);
+    return bounce_light(transport, {});
   };
   const Bounces one = run(1), two = run(2);
   set_thread_count(0);

@@ -10,10 +10,10 @@ namespace {
 
 TEST(DirectLight, IsBounceLightOfNoBounces) {
   const Surface surface = white_noise_surface(33, 17, 0.2);
-  const LightTransport seen = trace_surface(*make_slice_tracer(surface, {}), false);
+  const LightTransport transport = trace_surface(*make_slice_tracer(surface, {}), false);
   BounceOptions options;
   options.bounces = 0;
-  const Bounces expected = bounce_light(seen, options), actual = direct_light(seen);
+  const Bounces expected = bounce_light(transport, options), actual = direct_light(transport);
   ASSERT_EQ(actual.irradiance.size(), 1u);
   EXPECT_EQ(actual.irradiance[0].values, expected.irradiance[0].values);
   EXPECT_EQ(actual.total.values, expected.total.values);

@@ -19,20 +19,20 @@ const std::byte* packed_bytes(const FormFactorBlock& block) {
   return block.spilled ? block.spilled : block.packed.data();
 }
 
-// Calls visit(row in the block, column, part of the multiple of the row's quantum) for every code that
-// has a weight, those of a row in their order.
+// Calls visit(row in the block, column, part of the multiple of the row's quantum) for every code with a
+// weight, those of a row in their order.
 template <class Visit>
 void visit_packed(const BlockView& view, const Visit& visit) {
   const uint32_t most_weight = (1u << view.weight_bits) - 1;
   const uint32_t most_step = (1u << (FormFactorBlock::kCodeBits - view.weight_bits)) - 1;
   const uint16_t* code = view.codes;
-  for (uint32_t first = 0; first < view.filled; first += FormFactorBlock::kRowsInTurn) {
-    uint32_t column[FormFactorBlock::kRowsInTurn];
-    for (uint32_t i = 0; i < FormFactorBlock::kRowsInTurn && first + i < view.filled; ++i)
+  for (uint32_t first = 0; first < view.filled; first += FormFactorBlock::kInterleavedRows) {
+    uint32_t column[FormFactorBlock::kInterleavedRows];
+    for (uint32_t i = 0; i < FormFactorBlock::kInterleavedRows && first + i < view.filled; ++i)
       column[i] = view.before_start(first + i);
     for (uint32_t k = 0; view.rows_as_long[k] > first; ++k) {
-      const uint32_t turn = std::min(FormFactorBlock::kRowsInTurn, view.rows_as_long[k] - first);
-      for (uint32_t i = 0; i < turn; ++i, ++code) {
+      const uint32_t rows = std::min(FormFactorBlock::kInterleavedRows, view.rows_as_long[k] - first);
+      for (uint32_t i = 0; i < rows; ++i, ++code) {
         const uint32_t step = *code >> view.weight_bits, weight = *code & most_weight;
         column[i] += weight == 0 ? step * most_step : step;
         if (weight > 0) visit(view.row[first + i], column[i], step == 0 ? weight * most_weight : weight);
@@ -44,9 +44,9 @@ void visit_packed(const BlockView& view, const Visit& visit) {
 }  // namespace
 
 uint64_t FormFactorMatrix::count() const {
-  uint64_t links = 0;
-  for (const FormFactorBlock& block : blocks) links += block.links;
-  return links;
+  uint64_t entries = 0;
+  for (const FormFactorBlock& block : blocks) entries += block.entries;
+  return entries;
 }
 
 size_t FormFactorMatrix::stored_bytes() const {
@@ -56,12 +56,12 @@ size_t FormFactorMatrix::stored_bytes() const {
 }
 
 FormFactorMatrix make_form_factors(uint32_t rows, uint32_t columns, std::shared_ptr<SpillFile> spill) {
-  FormFactorMatrix links;
-  links.spill = std::move(spill);
-  links.rows = rows;
-  links.columns = columns;
-  links.blocks.resize((rows + FormFactorMatrix::kRowsPerBlock - 1) / FormFactorMatrix::kRowsPerBlock);
-  return links;
+  FormFactorMatrix form_factors;
+  form_factors.spill = std::move(spill);
+  form_factors.rows = rows;
+  form_factors.columns = columns;
+  form_factors.blocks.resize((rows + FormFactorMatrix::kRowsPerBlock - 1) / FormFactorMatrix::kRowsPerBlock);
+  return form_factors;
 }
 
 void append_row(FormFactorBlock& block, std::span<const FormFactor> row) {
@@ -74,23 +74,24 @@ void append_row(FormFactorBlock& block, std::span<const FormFactor> row) {
                                          row[i].patch, row[i - 1].patch));
   }
   if (!block.open) block.open = std::make_unique<OpenRows>();
-  block.open->links.insert(block.open->links.end(), row.begin(), row.end());
-  block.open->ends.push_back(static_cast<uint32_t>(block.open->links.size()));
+  block.open->entries.insert(block.open->entries.end(), row.begin(), row.end());
+  block.open->ends.push_back(static_cast<uint32_t>(block.open->entries.size()));
 }
 
-void finish_block(FormFactorMatrix& links, size_t index) {
-  FormFactorBlock& block = links.blocks[index];
+void finish_block(FormFactorMatrix& form_factors, size_t index) {
+  FormFactorBlock& block = form_factors.blocks[index];
   const size_t first = index * FormFactorMatrix::kRowsPerBlock;
   expect_equal(block.open ? block.open->ends.size() : 0,
-               std::min<size_t>(FormFactorMatrix::kRowsPerBlock, links.rows - first), "rows of a block");
+               std::min<size_t>(FormFactorMatrix::kRowsPerBlock, form_factors.rows - first),
+               "rows of a block");
   block = pack_block(*block.open);
-  if (!links.spill) return;
-  block.spilled = links.spill->store({std::span<const std::byte>(block.packed)});
+  if (!form_factors.spill) return;
+  block.spilled = form_factors.spill->store({std::span<const std::byte>(block.packed)});
   block.packed = std::vector<std::byte>();  // `= {}` would keep the memory
 }
 
-void finish_blocks(FormFactorMatrix& links) {
-  for (size_t b = 0; b < links.blocks.size(); ++b) finish_block(links, b);
+void finish_blocks(FormFactorMatrix& form_factors) {
+  for (size_t b = 0; b < form_factors.blocks.size(); ++b) finish_block(form_factors, b);
 }
 
 BlockView view_block(const FormFactorBlock& block) {
@@ -117,7 +118,7 @@ void close_view(const FormFactorBlock& block) {
 void unpack_block(const FormFactorBlock& block, BlockRows& rows) {
   constexpr uint32_t kNone = 0xffffffff;
   const BlockView view = view_block(block);
-  // A row's columns ascend; a multiple may be in several parts.
+  // A row's columns ascend; a multiple may have several codes.
   std::vector<uint32_t> last(view.rows, kNone);
   std::vector<double> quanta(view.rows);
   rows.row_begin.assign(view.rows + 1, 0);
@@ -145,14 +146,14 @@ void unpack_block(const FormFactorBlock& block, BlockRows& rows) {
   close_view(block);
 }
 
-std::vector<double> row_sums(const FormFactorMatrix& links) {
-  std::vector<double> sums(links.rows);
-  parallel_for(links.blocks.size(), 1, [&](size_t first, size_t last) {
+std::vector<double> row_sums(const FormFactorMatrix& form_factors) {
+  std::vector<double> sums(form_factors.rows);
+  parallel_for(form_factors.blocks.size(), 1, [&](size_t first, size_t last) {
     for (size_t b = first; b < last; ++b) {
-      const BlockView view = view_block(links.blocks[b]);
+      const BlockView view = view_block(form_factors.blocks[b]);
       for (uint32_t place = 0; place < view.filled; ++place)
         sums[b * FormFactorMatrix::kRowsPerBlock + view.row[place]] = view.sum(place);
-      close_view(links.blocks[b]);
+      close_view(form_factors.blocks[b]);
     }
   });
   return sums;

@@ -13,8 +13,8 @@ namespace hemibake {
 namespace {
 
 constexpr double kFinenessPerSum = 300, kLeastFineness = 12, kMostFineness = 64;
-// Multiples of a row that gets over half of all its light by one link: light in a deep pit leaves it by
-// others, however small they are.
+// Sum of the multiples of a row with a weight above ½, at least: light leaves a deep pit by small form
+// factors.
 constexpr double kDominatedFineness = 4096;
 constexpr int kMostWeightBits = 10;
 constexpr int kSumBits = 24;
@@ -22,15 +22,15 @@ constexpr size_t kBytesPerRow = 5;  // its sum, its index, its start
 
 double weight_of(const FormFactor& link) { return std::max(0.0, static_cast<double>(link.weight)); }
 
-// The smallest whole multiples of one unit that all weights are, within what rounding to float leaves of
-// them; their sum, or 0 where there is no such unit.
+// Finds the largest unit of which all weights are whole multiples, within their rounding to float. Returns
+// the sum of the multiples, or 0 if there is no such unit. least: the least weight above 0.
 uint64_t whole_multiples(std::span<const FormFactor> row, double least, std::span<uint32_t> multiples) {
   // Rounding makes a mean of at most kMostFineness: the least multiple is no larger unless more than half of
-  // the links were lost to it.
+  // the entries were rounded to zero.
   constexpr int kMostParts = 2 * static_cast<int>(kMostFineness);
-  // A finer unit than rounding would take, at the most: with cosines for weights there is one, but far finer.
+  // Cosines have a common unit too, but far finer than rounding would take.
   const double most_multiple = kMostParts * static_cast<double>(row.size());
-  // Weights are rounded to float, and the largest of a row makes up for what the others and E₀ lost.
+  // Weights are rounded to float, and the largest of a row takes the rounding of the others and of E₀.
   const auto is_whole = [](double exact, double per_weight) {
     const double rounded = static_cast<double>(static_cast<int64_t>(exact + 0.5));
     return std::abs(exact - rounded) <= std::clamp(0x1p-23 * per_weight, 1e-4, 1e-2) + 1e-6 * exact;
@@ -57,13 +57,13 @@ uint64_t whole_multiples(std::span<const FormFactor> row, double least, std::spa
   return static_cast<double>(total) <= most_multiple ? total : 0;
 }
 
-// What rounding a weight down left of its multiple.
+// The part of a multiple that rounding down cuts off.
 struct Remainder {
   double left;
   uint32_t index;
 };
 
-// Multiples that add up to `total`, by the largest remainders.
+// Rounds weights to multiples that add up to `total`, by the largest remainders.
 void round_multiples(std::span<const FormFactor> row, double quantum, double total,
                      std::span<uint32_t> multiples) {
   thread_local std::vector<Remainder> remainders;  // scratch
@@ -86,7 +86,7 @@ void round_multiples(std::span<const FormFactor> row, double quantum, double tot
   for (auto remainder = remainders.begin(); remainder != end; ++remainder) ++multiples[remainder->index];
 }
 
-// The sum of the weights; multiples of the row's quantum that have their shares of it.
+// Rounds a row's weights to multiples of its quantum. Returns the sum of the weights.
 double round_weights(std::span<const FormFactor> row, std::span<uint32_t> multiples) {
   double sum = 0, positive = 0, largest = 0, least = std::numeric_limits<double>::infinity();
   size_t count = 0;
@@ -101,17 +101,17 @@ double round_weights(std::span<const FormFactor> row, std::span<uint32_t> multip
   }
   if (!(sum > 0)) return 0;
   if (whole_multiples(row, least, multiples) > 0) return sum;
-  const double links = static_cast<double>(count);
-  double total = std::ceil(
-      std::clamp(kFinenessPerSum * sum * std::sqrt(links), kLeastFineness * links, kMostFineness * links));
+  const double entries = static_cast<double>(count);
+  double total = std::ceil(std::clamp(kFinenessPerSum * sum * std::sqrt(entries), kLeastFineness * entries,
+                                      kMostFineness * entries));
   if (largest > 0.5) total = std::max(total, kDominatedFineness);
   round_multiples(row, positive / total, total, multiples);
   return sum;
 }
 
-// Rows on their way into a block.
+// Rows while they are packed.
 struct Rows {
-  std::vector<uint32_t> multiples;  // of all links
+  std::vector<uint32_t> multiples;  // of all entries
   std::vector<double> sums;         // of every row
   std::vector<uint32_t> before;     // the column each row's first step leads from
   std::vector<uint8_t> starts;
@@ -126,12 +126,12 @@ uint32_t code_count(const Rows& rows, size_t row) {
 }
 
 void round_rows(const OpenRows& open, FormFactorBlock& block, Rows& rows) {
-  rows.multiples.assign(open.links.size(), 0);
+  rows.multiples.assign(open.entries.size(), 0);
   rows.sums.resize(block.rows);
   double largest = 0;
   for (size_t r = 0; r < block.rows; ++r) {
     const uint32_t begin = begin_of(open.ends, r), count = open.ends[r] - begin;
-    rows.sums[r] = round_weights(std::span(open.links).subspan(begin, count),
+    rows.sums[r] = round_weights(std::span(open.entries).subspan(begin, count),
                                  std::span(rows.multiples).subspan(begin, count));
     largest = std::max(largest, rows.sums[r]);
   }
@@ -145,7 +145,7 @@ void round_rows(const OpenRows& open, FormFactorBlock& block, Rows& rows) {
   }
 }
 
-// Where the rows start: as near before their first columns as 8 bits tell.
+// Sets where rows start: as near before their first columns as 8 bits allow.
 void set_starts(const OpenRows& open, FormFactorBlock& block, Rows& rows) {
   constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
   std::vector<uint32_t>& first = rows.before;
@@ -155,7 +155,7 @@ void set_starts(const OpenRows& open, FormFactorBlock& block, Rows& rows) {
     const size_t end = open.ends[r];
     while (i < end && rows.multiples[i] == 0) ++i;
     if (i < end) {
-      first[r] = open.links[i].patch;
+      first[r] = open.entries[i].patch;
       lowest = std::min(lowest, first[r]);
       highest = std::max(highest, first[r]);
     }
@@ -172,23 +172,24 @@ void set_starts(const OpenRows& open, FormFactorBlock& block, Rows& rows) {
   }
 }
 
-// Calls visit(step, multiple) for the links of a row that are stored.
+// Calls visit(step, multiple) for the stored entries of a row.
 template <class Visit>
 void visit_steps(const OpenRows& open, const Rows& rows, size_t row, const Visit& visit) {
   uint32_t column = rows.before[row];
   for (uint32_t i = begin_of(open.ends, row); i < open.ends[row]; ++i) {
     if (rows.multiples[i] == 0) continue;
-    visit(open.links[i].patch - column, rows.multiples[i]);
-    column = open.links[i].patch;
+    visit(open.entries[i].patch - column, rows.multiples[i]);
+    column = open.entries[i].patch;
   }
 }
 
-// Codes that numbers with so many bits take beyond the first, about, where a code has `bits` for them.
+// Estimates the codes that a number takes beyond its first one. number_bits: its width. bits: of it in a
+// code.
 size_t more_codes(int number_bits, int bits) {
   return number_bits <= bits ? 0 : 1 + ((uint64_t{1} << number_bits) >> (2 * bits));
 }
 
-// The width of weights that takes the fewest codes.
+// Chooses the width of weights that takes the fewest codes.
 void choose_weight_bits(const OpenRows& open, FormFactorBlock& block, const Rows& rows) {
   std::array<size_t, 33> steps{}, multiples{};  // by their numbers of bits
   for (size_t r = 0; r < block.rows; ++r)
@@ -206,7 +207,7 @@ void choose_weight_bits(const OpenRows& open, FormFactorBlock& block, const Rows
     fewest = more;
     block.weight_bits = static_cast<uint8_t>(weight_bits);
   }
-  block.links = static_cast<uint32_t>(std::accumulate(multiples.begin(), multiples.end(), size_t{0}));
+  block.entries = static_cast<uint32_t>(std::accumulate(multiples.begin(), multiples.end(), size_t{0}));
 }
 
 void encode_rows(const OpenRows& open, FormFactorBlock& block, Rows& rows) {
@@ -236,7 +237,7 @@ void encode_rows(const OpenRows& open, FormFactorBlock& block, Rows& rows) {
   block.codes = static_cast<uint32_t>(rows.codes.size());
 }
 
-// Rows by falling number of codes; those without any are left out.
+// Orders rows by falling number of codes, without the empty ones.
 void sort_rows(FormFactorBlock& block, Rows& rows) {
   rows.order.resize(block.rows);
   std::iota(rows.order.begin(), rows.order.end(), 0u);
@@ -252,20 +253,20 @@ std::byte* write(std::byte* to, Number number) {
 }
 
 std::byte* write_codes(const Rows& rows, std::byte* to) {
-  for (size_t first = 0; first < rows.order.size(); first += FormFactorBlock::kRowsInTurn) {
-    std::array<uint32_t, FormFactorBlock::kRowsInTurn> next{}, end{};
-    for (uint32_t i = 0; i < FormFactorBlock::kRowsInTurn && first + i < rows.order.size(); ++i) {
+  for (size_t first = 0; first < rows.order.size(); first += FormFactorBlock::kInterleavedRows) {
+    std::array<uint32_t, FormFactorBlock::kInterleavedRows> next{}, end{};
+    for (uint32_t i = 0; i < FormFactorBlock::kInterleavedRows && first + i < rows.order.size(); ++i) {
       next[i] = begin_of(rows.code_ends, rows.order[first + i]);
       end[i] = rows.code_ends[rows.order[first + i]];
     }
     while (next[0] < end[0])
-      for (uint32_t i = 0; i < FormFactorBlock::kRowsInTurn && next[i] < end[i]; ++i)
+      for (uint32_t i = 0; i < FormFactorBlock::kInterleavedRows && next[i] < end[i]; ++i)
         to = write(to, rows.codes[next[i]++]);
   }
   return to;
 }
 
-// In the order of BlockView.
+// Writes the block in the order of BlockView.
 void write_block(FormFactorBlock& block, const Rows& rows) {
   block.packed_bytes = (size_t{block.longest} + 1 + block.codes) * sizeof(uint16_t) +
                        rows.order.size() * kBytesPerRow + FormFactorBlock::kPadding;

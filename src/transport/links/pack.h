@@ -1,11 +1,11 @@
-// How a block of links is made from its rows.
+// Packs a block of form factors.
 #pragma once
 
 #include "transport/links/form_factors.h"
 
 namespace hemibake {
 
-// The rows as a block in memory, without open rows.
+// Returns the rows as a block in memory, without open rows.
 FormFactorBlock pack_block(const OpenRows& open);
 
 }  // namespace hemibake

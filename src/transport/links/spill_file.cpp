@@ -16,12 +16,12 @@
 namespace hemibake {
 namespace {
 
-// Addresses set aside for the file, more than any machine's disk holds of links: they cost nothing, and the
-// file then lies in one piece however it grows.
+// Addresses reserved for the file, more than any disk holds: they cost nothing and keep the file in one
+// piece.
 constexpr size_t kMostBytes = size_t{1} << 44;
 constexpr size_t kAlignment = 64;
-// Reading a page maps the others of the same 64 KiB that the system holds (Linux, "fault around"): they have
-// to go with it, or released bytes come back with their neighbours.
+// Reading a page maps its neighbours of the same 64 KiB too (Linux, "fault around"): they are released
+// together.
 constexpr uintptr_t kMappedTogether = uintptr_t{64} << 10;
 
 [[noreturn]] void fail(const std::filesystem::path& folder, const char* what) {
@@ -31,7 +31,7 @@ constexpr uintptr_t kMappedTogether = uintptr_t{64} << 10;
                   folder.string(), what, std::strerror(errno)));
 }
 
-// Open and without a name.
+// Opens a temporary file and removes its name.
 int open_nameless(const std::filesystem::path& folder) {
   std::string name = (folder / ".hemibake-links-XXXXXX").string();
   const int descriptor = mkostemp(name.data(), O_CLOEXEC);

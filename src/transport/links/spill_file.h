@@ -1,4 +1,4 @@
-// A temporary file that stands in for memory: blocks of links are written to it once and read where they are
+// A temporary file in place of memory: blocks of form factors are written to it once and read where they are
 // mapped.
 #pragma once
 
@@ -12,19 +12,18 @@ namespace hemibake {
 
 class SpillFile {
  public:
-  // Makes the file in `folder` (empty: the current one), without a name: whatever ends the process leaves
-  // nothing. Throws InputError where that cannot be done.
+  // Makes the file without a name: whatever ends the process leaves nothing. Throws InputError if that fails.
+  // folder: where; empty: the current one.
   explicit SpillFile(const std::filesystem::path& folder);
   ~SpillFile();
   SpillFile(const SpillFile&) = delete;
   SpillFile& operator=(const SpillFile&) = delete;
 
-  // Writes the parts one after another and returns where the first now lies in memory, aligned for any
-  // number. Any thread. Throws InputError where the disk is full.
+  // Writes the parts one after another and returns where the first is mapped, aligned to 64 bytes. Any thread
+  // may call it. Throws InputError if the disk is full.
   const std::byte* store(std::initializer_list<std::span<const std::byte>> parts);
 
-  // Says that these bytes, and those near them, are not needed for the time being; reading them again is
-  // slower but right.
+  // Gives the memory of stored bytes, and of those near them, back. Reading them again is slower but right.
   static void release(const std::byte* bytes, size_t size);
 
  private:

@@ -11,21 +11,19 @@
 namespace hemibake {
 namespace {
 
-// Measured on WallHeight at 0.1 m: links from a fifth on need a tenth fewer products, of which each is a
-// tenth more work.
-constexpr float kStrong = 0.25f;
+constexpr float kStrong = 0.25f;  // least share of light that a strong connection passes on
 constexpr size_t kEntriesPerRow = 2;
 constexpr size_t kGroupsPerTask = 1024;
-// What a group loses of its light, at least; the inverse says nothing below.
+// Least share of its light that a group loses: below, its inverse is rounding.
 constexpr double kLeastLoss = 1e-6;
 constexpr uint32_t kNoGroup = 0xffffffff;
 
-struct StrongLink {
+struct Connection {
   float weight;
   uint32_t row, column;
 };
 
-bool is_stronger(const StrongLink& a, const StrongLink& b) {
+bool is_stronger(const Connection& a, const Connection& b) {
   return std::tuple(-a.weight, a.row, a.column) < std::tuple(-b.weight, b.row, b.column);
 }
 
@@ -33,13 +31,14 @@ float passed_on(float weight, uint32_t patch, std::span<const float> albedo) {
   return weight * (albedo.empty() ? 1.0f : albedo[patch]);
 }
 
-// The strongest first.
-std::vector<StrongLink> strong_connections(const FormFactorMatrix& links, std::span<const float> albedo) {
-  std::vector<std::vector<StrongLink>> of_blocks(links.blocks.size());
-  parallel_for(links.blocks.size(), 1, [&](size_t begin, size_t end) {
+// Returns the strong connections, the strongest first.
+std::vector<Connection> strong_connections(const FormFactorMatrix& form_factors,
+                                           std::span<const float> albedo) {
+  std::vector<std::vector<Connection>> of_blocks(form_factors.blocks.size());
+  parallel_for(form_factors.blocks.size(), 1, [&](size_t begin, size_t end) {
     for (size_t b = begin; b < end; ++b) {
-      std::vector<StrongLink>& strong = of_blocks[b];
-      visit_rows(links, b,
+      std::vector<Connection>& strong = of_blocks[b];
+      visit_rows(form_factors, b,
                  [&](uint32_t row, std::span<const uint32_t> patches, std::span<const float> weights) {
                    for (size_t i = 0; i < patches.size(); ++i) {
                      const float weight = passed_on(weights[i], patches[i], albedo);
@@ -47,23 +46,23 @@ std::vector<StrongLink> strong_connections(const FormFactorMatrix& links, std::s
                    }
                  });
       std::ranges::sort(strong, is_stronger);
-      strong.resize(std::min<size_t>(strong.size(), links.blocks[b].rows));
+      strong.resize(std::min<size_t>(strong.size(), form_factors.blocks[b].rows));
       strong.shrink_to_fit();
     }
   });
   size_t count = 0;
-  for (const std::vector<StrongLink>& strong : of_blocks) count += strong.size();
-  std::vector<StrongLink> all;
+  for (const std::vector<Connection>& strong : of_blocks) count += strong.size();
+  std::vector<Connection> all;
   all.reserve(count);
-  for (std::vector<StrongLink>& strong : of_blocks) {
+  for (std::vector<Connection>& strong : of_blocks) {
     all.insert(all.end(), strong.begin(), strong.end());
-    strong = std::vector<StrongLink>();
+    strong = std::vector<Connection>();
   }
   std::ranges::sort(all, is_stronger);
   return all;
 }
 
-// Patches that belong together have one root, the lowest of them.
+// Disjoint sets of patches, each named by its root, the lowest of them.
 class DisjointSets {
  public:
   explicit DisjointSets(uint32_t patches) : parent_(patches), size_(patches, 1) {
@@ -86,36 +85,37 @@ class DisjointSets {
   std::vector<uint8_t> size_;  // of roots
 };
 
-DisjointSets join_strong(const FormFactorMatrix& links, std::span<const float> albedo) {
-  DisjointSets unions(links.rows);
+// Joins patches along strong connections.
+DisjointSets join_strong(const FormFactorMatrix& form_factors, std::span<const float> albedo) {
+  DisjointSets sets(form_factors.rows);
   size_t entries = 0;
-  for (const StrongLink& link : strong_connections(links, albedo)) {
-    const uint32_t a = unions.root(link.row), b = unions.root(link.column);
-    if (a == b || unions.size(a) + unions.size(b) > BlockJacobi::kMostMembers) continue;
-    const size_t joined = unions.size(a) + unions.size(b);
+  for (const Connection& connection : strong_connections(form_factors, albedo)) {
+    const uint32_t a = sets.root(connection.row), b = sets.root(connection.column);
+    if (a == b || sets.size(a) + sets.size(b) > BlockJacobi::kMostMembers) continue;
+    const size_t joined = sets.size(a) + sets.size(b);
     const auto entries_of = [](size_t size) { return size > 1 ? size * size : 0; };
-    const size_t more = entries_of(joined) - entries_of(unions.size(a)) - entries_of(unions.size(b));
-    if (entries + more > kEntriesPerRow * links.rows) continue;
+    const size_t more = entries_of(joined) - entries_of(sets.size(a)) - entries_of(sets.size(b));
+    if (entries + more > kEntriesPerRow * form_factors.rows) continue;
     entries += more;
-    unions.join(a, b);
+    sets.join(a, b);
   }
-  return unions;
+  return sets;
 }
 
-// Members and places for the inverses. group: of every patch.
-BlockJacobi list_groups(DisjointSets& unions, std::vector<uint32_t>& group) {
+// Lists the members of the sets of two or more and makes room for their inverses. group: set for every patch.
+BlockJacobi list_groups(DisjointSets& sets, std::vector<uint32_t>& group) {
   BlockJacobi groups;
   size_t entries = 0;
   uint32_t members = 0;
   for (uint32_t patch = 0; patch < group.size(); ++patch) {
-    const uint32_t root = unions.root(patch);
-    if (unions.size(root) == 1) continue;
+    const uint32_t root = sets.root(patch);
+    if (sets.size(root) == 1) continue;
     if (root == patch) {
       group[patch] = static_cast<uint32_t>(groups.count());
       groups.first_member.push_back(members);
       groups.first_entry.push_back(entries);
-      members += static_cast<uint32_t>(unions.size(root));
-      entries += unions.size(root) * unions.size(root);
+      members += static_cast<uint32_t>(sets.size(root));
+      entries += sets.size(root) * sets.size(root);
     } else {
       group[patch] = group[root];
     }
@@ -134,12 +134,12 @@ std::span<const uint32_t> members_of(const BlockJacobi& groups, size_t group) {
       .subspan(groups.first_member[group], groups.first_member[group + 1] - groups.first_member[group]);
 }
 
-// W diag(albedo) among the members of each group, where the inverse will be.
-void collect_entries(const FormFactorMatrix& links, std::span<const float> albedo,
+// Writes W diag(albedo) among the members of each group to where the inverse will be.
+void collect_entries(const FormFactorMatrix& form_factors, std::span<const float> albedo,
                      std::span<const uint32_t> group, BlockJacobi& groups) {
-  parallel_for(links.blocks.size(), 1, [&](size_t begin, size_t end) {
+  parallel_for(form_factors.blocks.size(), 1, [&](size_t begin, size_t end) {
     for (size_t b = begin; b < end; ++b)
-      visit_rows(links, b,
+      visit_rows(form_factors, b,
                  [&](uint32_t row, std::span<const uint32_t> patches, std::span<const float> weights) {
                    if (group[row] == kNoGroup) return;
                    const std::span<const uint32_t> members = members_of(groups, group[row]);
@@ -155,8 +155,8 @@ void collect_entries(const FormFactorMatrix& links, std::span<const float> albed
   });
 }
 
-// `entries` become (1 − entries)⁻¹, or 1 where that does not exist. Gauss and Jordan, in place; rows that
-// pass on at most all light need no pivots.
+// Replaces a matrix A by (1 − A)⁻¹, or by 1 if that does not exist: Gauss-Jordan elimination in place. Rows
+// that pass on at most all light need no pivoting. entries: A, row by row, size × size.
 void invert(std::span<float> entries, size_t size) {
   std::array<double, BlockJacobi::kMostMembers * BlockJacobi::kMostMembers> a;
   for (size_t i = 0; i < size * size; ++i) a[i] = -static_cast<double>(entries[i]);
@@ -181,14 +181,14 @@ void invert(std::span<float> entries, size_t size) {
 
 }  // namespace
 
-BlockJacobi make_block_jacobi(const FormFactorMatrix& links, std::span<const float> albedo) {
-  std::vector<uint32_t> group(links.rows, kNoGroup);
+BlockJacobi make_block_jacobi(const FormFactorMatrix& form_factors, std::span<const float> albedo) {
+  std::vector<uint32_t> group(form_factors.rows, kNoGroup);
   BlockJacobi groups;
   {
-    DisjointSets unions = join_strong(links, albedo);
-    groups = list_groups(unions, group);
+    DisjointSets sets = join_strong(form_factors, albedo);
+    groups = list_groups(sets, group);
   }
-  collect_entries(links, albedo, group, groups);
+  collect_entries(form_factors, albedo, group, groups);
   parallel_for(groups.count(), kGroupsPerTask, [&](size_t begin, size_t end) {
     for (size_t g = begin; g < end; ++g) {
       const size_t size = members_of(groups, g).size();

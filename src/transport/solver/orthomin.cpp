@@ -11,10 +11,10 @@ namespace {
 
 constexpr size_t kGrain = 16384;
 constexpr size_t kDirectionsKept = 4;
-// Groups take as long as ten products or so; at albedo 0.5 the light is there before.
+// Groups cost about ten products; at albedo 0.5 the solver ends before.
 constexpr int kStepsBeforeGroups = 8;
 
-// Summed piece by piece, in an order that does not depend on the threads.
+// Returns a · b, summed piece by piece in an order that does not depend on the threads.
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> pieces((a.size() + kGrain - 1) / kGrain);
   parallel_for(a.size(), kGrain, [&](size_t begin, size_t end) {
@@ -27,15 +27,15 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return sum;
 }
 
-// a += factor · b
+// Adds: a += factor · b.
 void add_scaled(double factor, const std::vector<double>& b, std::vector<double>& a) {
   parallel_for(a.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) a[i] += factor * b[i];
   });
 }
 
-// So that `reflect` multiplies exactly these values: it rounds what is reflected to float, which would part
-// the residual as it is counted from what it is, by more than pits that are deep allow.
+// Rounds light to values whose reflection is a float, as multiply() makes it: without that the residual
+// drifts from its true value by more than deep pits allow.
 void round_for_product(std::span<const float> albedo, std::vector<double>& light) {
   parallel_for(light.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -47,13 +47,16 @@ void round_for_product(std::span<const float> albedo, std::vector<double>& light
 
 }  // namespace
 
-Orthomin::Orthomin(const FormFactorMatrix& links, std::span<const float> albedo, std::vector<double> start,
-                   std::vector<double> residual)
-    : links_(links), albedo_(albedo), light_(std::move(start)), residual_(std::move(residual)) {}
+Orthomin::Orthomin(const FormFactorMatrix& form_factors, std::span<const float> albedo,
+                   std::vector<double> start, std::vector<double> residual)
+    : form_factors_(form_factors),
+      albedo_(albedo),
+      light_(std::move(start)),
+      residual_(std::move(residual)) {}
 
 bool Orthomin::step() {
   if (steps_ == kStepsBeforeGroups && !groups_) {
-    groups_ = make_block_jacobi(links_, albedo_);
+    groups_ = make_block_jacobi(form_factors_, albedo_);
     apply_block_jacobi(*groups_, residual_);
     kept_.clear();
     oldest_ = 0;
@@ -64,10 +67,10 @@ bool Orthomin::step() {
   const bool replaces = !next.change.empty();
   next.change = residual_;
   round_for_product(albedo_, next.change);
-  apply_transport(links_, albedo_, next.change, next.reduction);
+  apply_transport(form_factors_, albedo_, next.change, next.reduction);
   work_ += 1;
   if (groups_ && !groups_->inverse.empty())
-    work_ += static_cast<double>(groups_->inverse.size()) / static_cast<double>(links_.count());
+    work_ += static_cast<double>(groups_->inverse.size()) / static_cast<double>(form_factors_.count());
   parallel_for(next.change.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) next.reduction[i] = next.change[i] - next.reduction[i];
   });
@@ -99,15 +102,15 @@ double Orthomin::largest_residual() const {
   return largest;
 }
 
-void apply_transport(const FormFactorMatrix& links, std::span<const float> albedo,
+void apply_transport(const FormFactorMatrix& form_factors, std::span<const float> albedo,
                      std::span<const double> light, std::vector<double>& out) {
-  out.resize(links.rows);
-  if (albedo.empty()) return multiply(links, light, out);
+  out.resize(form_factors.rows);
+  if (albedo.empty()) return multiply(form_factors, light, out);
   std::vector<double> reflected(light.size());
   parallel_for(light.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) reflected[i] = static_cast<double>(albedo[i]) * light[i];
   });
-  multiply(links, reflected, out);
+  multiply(form_factors, reflected, out);
 }
 
 }  // namespace hemibake

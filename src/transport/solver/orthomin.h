@@ -1,16 +1,13 @@
 // Solves E = direct + W diag(albedo) E between patches in far fewer products than bounce after bounce.
 //
-// Generalised conjugate residuals, truncated (Orthomin: Eisenstat, Elman and Schultz, "Variational Iterative
+// Orthomin, truncated generalised conjugate residuals (Eisenstat, Elman and Schultz, "Variational Iterative
 // Methods for Nonsymmetric Systems of Linear Equations", SIAM J. Numer. Anal. 20, 1983): every step takes one
-// product and makes the residual's 2-norm as small as the last directions allow. W is symmetric under the
-// patches' areas but for noise, so that few directions do nearly what all would: on WallHeight at 0.1 m four
-// need no more products than all, BiCGSTAB (Eigen's) half as many again.
+// product and makes the residual's 2-norm as small as the last four directions allow. W is symmetric under
+// the patches' areas but for noise, so that few directions do nearly as well as all.
 //
-// What is slow then are nodes in the bottom of pits, of which two to six see little but each other. From the
-// ninth step on their light is followed to the end inside such groups (transport/solver/block_jacobi.h): with
-// G the inverse of I − W diag(albedo) within groups, G (direct − E + W diag(albedo) E) is made small. That is
-// a third of the products on WallHeight; problems that end sooner do not pay for it. (E corrected by G
-// instead, the residual as it is, comes to a standstill.)
+// From the ninth step on it is preconditioned by block Jacobi: with G the inverse of I − W diag(albedo)
+// within groups of patches that see little but each other (block_jacobi.h), it minimises G (direct − E + W
+// diag(albedo) E). Problems that end sooner do not pay for the groups.
 #pragma once
 
 #include <optional>
@@ -24,20 +21,22 @@ namespace hemibake {
 
 class Orthomin {
  public:
-  // links: patch × patch. albedo: one per patch, 0..1; empty: 1 everywhere. start: any light. residual:
-  // direct + W diag(albedo) start − start. Both references must outlive the solver.
-  Orthomin(const FormFactorMatrix& links, std::span<const float> albedo, std::vector<double> start,
+  // form_factors: patch × patch, must outlive the solver. albedo: one per patch, 0..1; empty: 1 everywhere;
+  // must outlive the solver. start: any light, one per patch. residual: direct + W diag(albedo) start −
+  // start.
+  Orthomin(const FormFactorMatrix& form_factors, std::span<const float> albedo, std::vector<double> start,
            std::vector<double> residual);
 
-  // One product. False, and nothing done, where there is nothing left to do: the residual is zero, or no
-  // direction reduces it.
+  // Makes one step, of one product. Returns false, and does nothing, if the residual is zero or no direction
+  // reduces it.
   bool step();
 
   const std::vector<double>& light() const { return light_; }
-  // Times a bound of the rows of (I − W diag(albedo))⁻¹ it bounds the error, and it is at most twice the
-  // largest error, with groups too: what these pass on adds up to no more than it did, and G is at least 1.
+  // Returns the largest residual r of a patch: error / bound ≤ r ≤ 2 · largest error, for any bound of the
+  // row sums of (I − W diag(albedo))⁻¹. It holds with groups too: G is at least 1, and G W passes on no more
+  // than W.
   double largest_residual() const;
-  // Of all steps so far, in readings of the links: a product is one.
+  // Returns the work of all steps so far, in products.
   double work() const { return work_; }
 
  private:
@@ -46,7 +45,7 @@ class Orthomin {
     double norm_squared = 0;
   };
 
-  const FormFactorMatrix& links_;
+  const FormFactorMatrix& form_factors_;
   std::span<const float> albedo_;
   std::vector<double> light_, residual_;
   std::vector<Direction> kept_;
@@ -56,8 +55,9 @@ class Orthomin {
   std::optional<BlockJacobi> groups_;
 };
 
-// out = links · diag(albedo) · light; albedo as above.
-void apply_transport(const FormFactorMatrix& links, std::span<const float> albedo,
+// Sends light on by one bounce: out = W diag(albedo) light. albedo: one per column, 0..1; empty: 1
+// everywhere.
+void apply_transport(const FormFactorMatrix& form_factors, std::span<const float> albedo,
                      std::span<const double> light, std::vector<double>& out);
 
 }  // namespace hemibake

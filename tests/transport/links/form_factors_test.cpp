@@ -22,22 +22,22 @@ using testing::HasSubstr;
 
 // Row i links to i+1 with ¼ and to the row before the last with ½.
 FormFactorMatrix ring(uint32_t rows) {
-  FormFactorMatrix links = make_form_factors(rows, rows + 1);
+  FormFactorMatrix form_factors = make_form_factors(rows, rows + 1);
   for (uint32_t i = 0; i < rows; ++i) {
     const uint32_t next = (i + 1) % rows;
-    append_row(links.blocks[i / FormFactorMatrix::kRowsPerBlock],
+    append_row(form_factors.blocks[i / FormFactorMatrix::kRowsPerBlock],
                std::vector<FormFactor>{{next, 0.25f}, {rows, 0.5f}});
   }
-  finish_blocks(links);
-  return links;
+  finish_blocks(form_factors);
+  return form_factors;
 }
 
 // Up to 40 links, neighbours and far ones, weights over twelve orders of magnitude.
 std::vector<FormFactor> random_row(uint32_t columns, std::mt19937& random) {
   std::vector<FormFactor> row;
-  const uint32_t links = random() % 41, reach = random() % 3 == 0 ? 2 : columns / 20 + 1;
+  const uint32_t form_factors = random() % 41, reach = random() % 3 == 0 ? 2 : columns / 20 + 1;
   uint32_t patch = random() % columns;
-  for (uint32_t i = 0; i < links && patch < columns; ++i) {
+  for (uint32_t i = 0; i < form_factors && patch < columns; ++i) {
     row.push_back({patch, std::pow(10.0f, -static_cast<float>(random() % 12000) / 1000)});
     patch += 1 + random() % reach;
   }
@@ -47,19 +47,19 @@ std::vector<FormFactor> random_row(uint32_t columns, std::mt19937& random) {
 // One row among others, far into a matrix of `columns`, unpacked again.
 std::vector<FormFactor> pack_and_unpack(const std::vector<FormFactor>& row, uint32_t columns,
                                         uint32_t rows = 3) {
-  FormFactorMatrix links = make_form_factors(rows, columns);
+  FormFactorMatrix form_factors = make_form_factors(rows, columns);
   for (uint32_t i = 0; i < rows; ++i)
-    append_row(links.blocks[i / FormFactorMatrix::kRowsPerBlock],
+    append_row(form_factors.blocks[i / FormFactorMatrix::kRowsPerBlock],
                i == rows - 2 ? row : std::vector<FormFactor>{{columns - 1, 0.5f}});
-  finish_blocks(links);
+  finish_blocks(form_factors);
   BlockRows stored;
-  unpack_block(links.blocks.back(), stored);
+  unpack_block(form_factors.blocks.back(), stored);
   const uint32_t at = (rows - 2) % FormFactorMatrix::kRowsPerBlock;
   std::vector<FormFactor> unpacked;
   for (uint32_t k = stored.row_begin[at]; k < stored.row_begin[at + 1]; ++k)
-    unpacked.push_back({stored.patches[k], stored.weights[k]});
+    unpacked.push_back({stored.columns[k], stored.weights[k]});
   // Its neighbours must not have suffered.
-  EXPECT_EQ(stored.patches.back(), columns - 1);
+  EXPECT_EQ(stored.columns.back(), columns - 1);
   EXPECT_EQ(stored.weights.back(), 0.5f);
   EXPECT_EQ(stored.row_begin[at + 2], stored.row_begin[at + 1] + 1);
   return unpacked;
@@ -91,41 +91,41 @@ void expect_packed_well(const std::vector<FormFactor>& row, const std::vector<Fo
 
 TEST(FormFactorMatrix, GatherIsTheMatrixProduct) {
   const uint32_t rows = 3 * FormFactorMatrix::kRowsPerBlock + 17;
-  const FormFactorMatrix links = ring(rows);
-  EXPECT_EQ(links.count(), 2u * rows);
+  const FormFactorMatrix form_factors = ring(rows);
+  EXPECT_EQ(form_factors.count(), 2u * rows);
   std::vector<double> values(rows + 1), out(rows);
   for (uint32_t i = 0; i <= rows; ++i) values[i] = i + 1;
-  multiply(links, values, out);
+  multiply(form_factors, values, out);
   // ½ is twice ¼, and the values are whole numbers: nothing is rounded.
   for (uint32_t i = 0; i < rows; ++i) ASSERT_EQ(out[i], 0.25 * ((i + 1) % rows + 1) + 0.5 * (rows + 1));
-  for (const double sum : row_sums(links)) ASSERT_EQ(sum, 0.75);
+  for (const double sum : row_sums(form_factors)) ASSERT_EQ(sum, 0.75);
 }
 
 // The same numbers whatever the vectors: the product against the rows as unpacked.
 TEST(FormFactorMatrix, GatherAgreesWithTheUnpackedRows) {
   std::mt19937 random(5);
   for (const uint32_t columns : {1u, 7u, 8u, 1000u, 3000000u}) {
-    FormFactorMatrix links = make_form_factors(2100, columns);
-    for (uint32_t i = 0; i < links.rows; ++i)
-      append_row(links.blocks[i / FormFactorMatrix::kRowsPerBlock], random_row(columns, random));
-    finish_blocks(links);
-    std::vector<double> values(columns), out(links.rows);
+    FormFactorMatrix form_factors = make_form_factors(2100, columns);
+    for (uint32_t i = 0; i < form_factors.rows; ++i)
+      append_row(form_factors.blocks[i / FormFactorMatrix::kRowsPerBlock], random_row(columns, random));
+    finish_blocks(form_factors);
+    std::vector<double> values(columns), out(form_factors.rows);
     for (double& value : values) value = static_cast<double>(random() % 1000);
-    multiply(links, values, out);
+    multiply(form_factors, values, out);
     // Products are exact in double and added in the order of the links.
     const int64_t all = hwy::SupportedTargets();
     for (int64_t left = all; left != 0; left &= left - 1) {
       hwy::SetSupportedTargetsForTest(left & -left);
-      std::vector<double> again(links.rows);
-      multiply(links, values, again);
+      std::vector<double> again(form_factors.rows);
+      multiply(form_factors, values, again);
       EXPECT_EQ(again, out) << hwy::TargetName(left & -left);
     }
     hwy::SetSupportedTargetsForTest(0);
-    const std::vector<double> sums = row_sums(links);
+    const std::vector<double> sums = row_sums(form_factors);
     BlockRows rows;
-    for (uint32_t i = 0; i < links.rows; ++i) {
+    for (uint32_t i = 0; i < form_factors.rows; ++i) {
       if (i % FormFactorMatrix::kRowsPerBlock == 0)
-        unpack_block(links.blocks[i / FormFactorMatrix::kRowsPerBlock], rows);
+        unpack_block(form_factors.blocks[i / FormFactorMatrix::kRowsPerBlock], rows);
       double product = 0, sum = 0;
       for (uint32_t k = rows.row_begin[i % FormFactorMatrix::kRowsPerBlock];
            k < rows.row_begin[i % FormFactorMatrix::kRowsPerBlock + 1]; ++k) {
@@ -219,15 +219,15 @@ TEST(FormFactorMatrix, HitsThatWeighAlikeStayWhole) {
 // Sums that are multiples of their last bit, up to 1 and to 2 itself.
 TEST(FormFactorMatrix, SumsAreExact) {
   for (const double scale : {1.0, 2.0, 0x1p-40}) {
-    FormFactorMatrix links = make_form_factors(5, 100);
+    FormFactorMatrix form_factors = make_form_factors(5, 100);
     const std::vector<double> sums{scale, scale * 0x1p-24, 0, scale * 0.75, scale * (1 - 0x1p-24)};
     for (const double sum : sums)
-      append_row(links.blocks[0], std::vector<FormFactor>{{7, static_cast<float>(sum / 2)},
-                                                          {8, static_cast<float>(sum - sum / 2)}});
-    finish_blocks(links);
-    EXPECT_EQ(row_sums(links), sums);
+      append_row(form_factors.blocks[0], std::vector<FormFactor>{{7, static_cast<float>(sum / 2)},
+                                                                 {8, static_cast<float>(sum - sum / 2)}});
+    finish_blocks(form_factors);
+    EXPECT_EQ(row_sums(form_factors), sums);
     std::vector<double> out(5);
-    multiply(links, std::vector<double>(100, 1), out);
+    multiply(form_factors, std::vector<double>(100, 1), out);
     EXPECT_EQ(out, sums);
   }
 }
@@ -249,8 +249,8 @@ TEST(FormFactorMatrix, SmallLinksBesideAVeryLargeOneStay) {
 }
 
 TEST(FormFactorMatrix, WhatIsNoRowIsABug) {
-  FormFactorMatrix links = make_form_factors(5, 100);
-  const auto append = [&](const std::vector<FormFactor>& row) { append_row(links.blocks[0], row); };
+  FormFactorMatrix form_factors = make_form_factors(5, 100);
+  const auto append = [&](const std::vector<FormFactor>& row) { append_row(form_factors.blocks[0], row); };
   EXPECT_THROW(append({{1, std::nanf("")}}), std::logic_error);
   EXPECT_THROW(append({{1, INFINITY}}), std::logic_error);
   EXPECT_THROW(append({{2, 0.5f}, {1, 0.25f}}), std::logic_error);
@@ -265,11 +265,11 @@ TEST(FormFactorMatrix, SpilledBlocksReadAsThoseInMemory) {
   EXPECT_EQ(folder.count(), 0u);  // it has no name
   for (uint32_t i = 0; i < kept.rows; ++i) {
     const std::vector<FormFactor> row = random_row(kept.columns, random);
-    for (FormFactorMatrix* links : {&kept, &spilled})
-      append_row(links->blocks[i / FormFactorMatrix::kRowsPerBlock], row);
+    for (FormFactorMatrix* form_factors : {&kept, &spilled})
+      append_row(form_factors->blocks[i / FormFactorMatrix::kRowsPerBlock], row);
   }
   for (size_t block = kept.blocks.size(); block-- > 0;)
-    for (FormFactorMatrix* links : {&kept, &spilled}) finish_block(*links, block);
+    for (FormFactorMatrix* form_factors : {&kept, &spilled}) finish_block(*form_factors, block);
   EXPECT_EQ(spilled.count(), kept.count());
   EXPECT_EQ(spilled.stored_bytes(), kept.stored_bytes());
   EXPECT_EQ(spilled.blocks[0].packed.capacity(), 0u);
@@ -294,24 +294,25 @@ size_t mapped_file_bytes() {
 TEST(FormFactorMatrix, SpilledBlocksDoNotStayInMemory) {
   const TemporaryFolder folder;
   std::mt19937 random(4);
-  FormFactorMatrix links = make_form_factors(40000, 40000, std::make_shared<SpillFile>(folder / ""));
-  for (uint32_t i = 0; i < links.rows; ++i)
-    append_row(links.blocks[i / FormFactorMatrix::kRowsPerBlock], random_row(links.columns, random));
-  finish_blocks(links);
-  const std::vector<double> values(links.columns, 1);
-  std::vector<double> out(links.rows);
+  FormFactorMatrix form_factors = make_form_factors(40000, 40000, std::make_shared<SpillFile>(folder / ""));
+  for (uint32_t i = 0; i < form_factors.rows; ++i)
+    append_row(form_factors.blocks[i / FormFactorMatrix::kRowsPerBlock],
+               random_row(form_factors.columns, random));
+  finish_blocks(form_factors);
+  const std::vector<double> values(form_factors.columns, 1);
+  std::vector<double> out(form_factors.rows);
   // The program's own pages are files too: all that runs below has run once on links that lie in memory.
-  FormFactorMatrix warm = make_form_factors(links.rows, links.columns);
+  FormFactorMatrix warm = make_form_factors(form_factors.rows, form_factors.columns);
   for (uint32_t i = 0; i < warm.rows; ++i)
     append_row(warm.blocks[i / FormFactorMatrix::kRowsPerBlock], std::vector<FormFactor>{{i, 1.0f}});
   finish_blocks(warm);
   multiply(warm, values, out);
   row_sums(warm);
   const size_t before = mapped_file_bytes();
-  multiply(links, values, out);
-  row_sums(links);
+  multiply(form_factors, values, out);
+  row_sums(form_factors);
   // At the end of a pass some threads hold 64 KiB on either side of their last block.
-  EXPECT_LT(mapped_file_bytes(), before + links.stored_bytes() / 4);
+  EXPECT_LT(mapped_file_bytes(), before + form_factors.stored_bytes() / 4);
 }
 
 TEST(FormFactorMatrix, NoRoomToSpillIsOneLine) {
@@ -319,12 +320,12 @@ TEST(FormFactorMatrix, NoRoomToSpillIsOneLine) {
               HasSubstr("/nowhere/at/all: could not make a temporary file for links: No such file"));
   const SmallDisk disk;
   if (!disk.mounted()) GTEST_SKIP() << "may not mount a disk";
-  FormFactorMatrix links =
+  FormFactorMatrix form_factors =
       make_form_factors(FormFactorMatrix::kRowsPerBlock, 10000, std::make_shared<SpillFile>(disk / ""));
   std::vector<FormFactor> row(10000);
   for (uint32_t i = 0; i < row.size(); ++i) row[i] = {i, 0.5f};
-  for (uint32_t i = 0; i < links.rows; ++i) append_row(links.blocks[0], row);
-  EXPECT_THAT(error_of<InputError>([&] { finish_block(links, 0); }),
+  for (uint32_t i = 0; i < form_factors.rows; ++i) append_row(form_factors.blocks[0], row);
+  EXPECT_THAT(error_of<InputError>([&] { finish_block(form_factors, 0); }),
               HasSubstr("could not write a temporary file for links: No space left on device"));
   EXPECT_EQ(disk.count(), 0u);
 }
@@ -333,46 +334,48 @@ TEST(FormFactorMatrix, NoRoomToSpillIsOneLine) {
 TEST(FormFactorMatrix, ThreeAndAHalfBytesEach) {
   constexpr uint32_t kMapRow = 720, kRows = 2048;
   std::mt19937 random(3);
-  FormFactorMatrix links = make_form_factors(kRows, kMapRow * 360);
+  FormFactorMatrix form_factors = make_form_factors(kRows, kMapRow * 360);
   for (uint32_t i = 0; i < kRows; ++i) {
     std::vector<FormFactor> row;
     for (uint32_t patch = 1000; patch < 21000; patch += 2 + random() % 10 + (random() % 4 == 0) * kMapRow)
       for (uint32_t run = 1 + random() % 4; run > 0; --run)
         row.push_back({patch++, static_cast<float>(1 + random() % 1000)});
-    append_row(links.blocks[i / FormFactorMatrix::kRowsPerBlock], row);
+    append_row(form_factors.blocks[i / FormFactorMatrix::kRowsPerBlock], row);
   }
-  finish_blocks(links);
-  EXPECT_LT(static_cast<double>(links.stored_bytes()) / static_cast<double>(links.count()), 3.5);
+  finish_blocks(form_factors);
+  EXPECT_LT(static_cast<double>(form_factors.stored_bytes()) / static_cast<double>(form_factors.count()),
+            3.5);
 }
 
 TEST(FormFactorMatrix, WrongLengthsAreABug) {
-  const FormFactorMatrix links = ring(8);
+  const FormFactorMatrix form_factors = ring(8);
   std::vector<double> values(7), out(8);
-  EXPECT_THROW(multiply(links, values, out), std::logic_error);
+  EXPECT_THROW(multiply(form_factors, values, out), std::logic_error);
 }
 
 // Of a wide plain hardly a row has links.
 TEST(FormFactorMatrix, EmptyRowsTakeNoMemory) {
-  FormFactorMatrix links = make_form_factors(FormFactorMatrix::kRowsPerBlock, 9);
+  FormFactorMatrix form_factors = make_form_factors(FormFactorMatrix::kRowsPerBlock, 9);
   for (uint32_t i = 0; i < FormFactorMatrix::kRowsPerBlock; ++i)
-    append_row(links.blocks[0], i == 77 ? std::vector<FormFactor>{{8, 0.5f}} : std::vector<FormFactor>{});
-  finish_blocks(links);
-  EXPECT_LT(links.stored_bytes(), sizeof(FormFactorBlock) + FormFactorBlock::kPadding + 16);
+    append_row(form_factors.blocks[0],
+               i == 77 ? std::vector<FormFactor>{{8, 0.5f}} : std::vector<FormFactor>{});
+  finish_blocks(form_factors);
+  EXPECT_LT(form_factors.stored_bytes(), sizeof(FormFactorBlock) + FormFactorBlock::kPadding + 16);
   std::vector<double> out(FormFactorMatrix::kRowsPerBlock, NAN);
-  multiply(links, std::vector<double>(9, 1.0), out);
+  multiply(form_factors, std::vector<double>(9, 1.0), out);
   for (uint32_t i = 0; i < FormFactorMatrix::kRowsPerBlock; ++i) EXPECT_EQ(out[i], i == 77 ? 0.5 : 0) << i;
 }
 
 TEST(FormFactorMatrix, EmptyRowsAreFine) {
-  FormFactorMatrix links = make_form_factors(2, 2);
-  append_row(links.blocks[0], {});
-  append_row(links.blocks[0], {});
-  finish_blocks(links);
+  FormFactorMatrix form_factors = make_form_factors(2, 2);
+  append_row(form_factors.blocks[0], {});
+  append_row(form_factors.blocks[0], {});
+  finish_blocks(form_factors);
   std::vector<double> out(2, 7);
-  multiply(links, std::vector<double>{1, 1}, out);
+  multiply(form_factors, std::vector<double>{1, 1}, out);
   EXPECT_EQ(out, (std::vector<double>{0, 0}));
-  EXPECT_EQ(links.count(), 0u);
-  for (const double sum : row_sums(links)) EXPECT_EQ(sum, 0);
+  EXPECT_EQ(form_factors.count(), 0u);
+  for (const double sum : row_sums(form_factors)) EXPECT_EQ(sum, 0);
 }
 
 }  // namespace

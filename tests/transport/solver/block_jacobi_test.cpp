@@ -17,12 +17,12 @@ namespace {
 using Rows = std::vector<std::vector<FormFactor>>;
 
 FormFactorMatrix links_of(const Rows& rows) {
-  FormFactorMatrix links =
+  FormFactorMatrix form_factors =
       make_form_factors(static_cast<uint32_t>(rows.size()), static_cast<uint32_t>(rows.size()));
   for (size_t i = 0; i < rows.size(); ++i)
-    append_row(links.blocks[i / FormFactorMatrix::kRowsPerBlock], rows[i]);
-  finish_blocks(links);
-  return links;
+    append_row(form_factors.blocks[i / FormFactorMatrix::kRowsPerBlock], rows[i]);
+  finish_blocks(form_factors);
+  return form_factors;
 }
 
 TEST(BlockJacobi, APairIsAGeometricSeries) {
@@ -41,10 +41,10 @@ TEST(BlockJacobi, APairIsAGeometricSeries) {
 }
 
 TEST(BlockJacobi, AlbedoWeakensLinks) {
-  const FormFactorMatrix links = links_of({{{1, 1.0f}}, {{0, 0.75f}}});
+  const FormFactorMatrix form_factors = links_of({{{1, 1.0f}}, {{0, 0.75f}}});
   const std::vector<float> weak{0.25f, 0.25f}, uneven{0.5f, 1.0f};
-  EXPECT_EQ(make_block_jacobi(links, weak).count(), 0u);
-  const BlockJacobi groups = make_block_jacobi(links, uneven);
+  EXPECT_EQ(make_block_jacobi(form_factors, weak).count(), 0u);
+  const BlockJacobi groups = make_block_jacobi(form_factors, uneven);
   ASSERT_EQ(groups.count(), 1u);
   // (1 −1·1; −0.75·0.5 1)⁻¹
   EXPECT_NEAR(groups.inverse[1], 1 / (1 - 0.375), 1e-6);
@@ -76,11 +76,11 @@ TEST(BlockJacobi, SameBytesAtAnyThreadCount) {
   const Surface surface = white_noise_surface(24, 24, 0.5);
   SliceOptions options;
   options.azimuths = 8;
-  const LightTransport seen = trace_surface(*make_slice_tracer(surface, options), true);
+  const LightTransport transport = trace_surface(*make_slice_tracer(surface, options), true);
   set_thread_count(1);
-  const BlockJacobi one = make_block_jacobi(seen.patch_form_factors, {});
+  const BlockJacobi one = make_block_jacobi(transport.patch_form_factors, {});
   set_thread_count(2);
-  const BlockJacobi two = make_block_jacobi(seen.patch_form_factors, {});
+  const BlockJacobi two = make_block_jacobi(transport.patch_form_factors, {});
   set_thread_count(0);
   EXPECT_GT(one.count(), 0u);
   EXPECT_EQ(one.members, two.members);

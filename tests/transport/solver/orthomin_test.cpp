@@ -20,19 +20,19 @@ LightTransport see(const Surface& surface) {
   return trace_surface(*make_slice_tracer(surface, options), true);
 }
 
-std::vector<double> direct_of(const LightTransport& seen) {
-  return {seen.patch_direct().begin(), seen.patch_direct().end()};
+std::vector<double> direct_of(const LightTransport& transport) {
+  return {transport.patch_direct().begin(), transport.patch_direct().end()};
 }
 
 // E = direct + W diag(albedo) E by Gaussian elimination with pivots.
-std::vector<double> solve_densely(const FormFactorMatrix& links, const std::vector<float>& albedo,
+std::vector<double> solve_densely(const FormFactorMatrix& form_factors, const std::vector<float>& albedo,
                                   std::vector<double> right) {
-  const size_t n = links.rows;
+  const size_t n = form_factors.rows;
   std::vector<std::vector<double>> matrix(n, std::vector<double>(n));
   for (size_t column = 0; column < n; ++column) {
     std::vector<double> one(n), product(n);
     one[column] = static_cast<double>(albedo[column]);
-    multiply(links, one, product);
+    multiply(form_factors, one, product);
     for (size_t row = 0; row < n; ++row) matrix[row][column] = (row == column) - product[row];
   }
   for (size_t k = 0; k < n; ++k) {
@@ -55,10 +55,10 @@ std::vector<double> solve_densely(const FormFactorMatrix& links, const std::vect
 }
 
 // Products until no residual exceeds `tolerance`, light in `light`.
-int solve(const LightTransport& seen, const std::vector<float>& albedo, double tolerance,
+int solve(const LightTransport& transport, const std::vector<float>& albedo, double tolerance,
           std::vector<double>& light) {
-  const std::vector<double> direct = direct_of(seen);
-  Orthomin solver(seen.patch_form_factors, albedo, std::vector<double>(direct.size()), direct);
+  const std::vector<double> direct = direct_of(transport);
+  Orthomin solver(transport.patch_form_factors, albedo, std::vector<double>(direct.size()), direct);
   int products = 0;
   while (solver.largest_residual() > tolerance && solver.step()) ++products;
   light = solver.light();
@@ -66,17 +66,18 @@ int solve(const LightTransport& seen, const std::vector<float>& albedo, double t
 }
 
 TEST(Orthomin, AgreesWithEliminationAtAnyAlbedo) {
-  const LightTransport seen = see(white_noise_surface(7, 5, 0.2));
-  const size_t patches = seen.patch_form_factors.rows;
+  const LightTransport transport = see(white_noise_surface(7, 5, 0.2));
+  const size_t patches = transport.patch_form_factors.rows;
   for (const float albedo : {0.0f, 0.5f, 0.999999f, 1.0f, -1.0f}) {
     std::vector<float> albedos(patches, albedo);
     // Below 0: every patch another one.
     for (size_t i = 0; i < patches && albedo < 0; ++i) albedos[i] = static_cast<float>(i * 7 % 11) / 10;
     constexpr double kResidual = 1e-13;
     std::vector<double> light;
-    solve(seen, albedos, kResidual, light);
-    const std::vector<double> exact = solve_densely(seen.patch_form_factors, albedos, direct_of(seen)),
-                              sums = solve_densely(seen.patch_form_factors, albedos,
+    solve(transport, albedos, kResidual, light);
+    const std::vector<double> exact =
+                                  solve_densely(transport.patch_form_factors, albedos, direct_of(transport)),
+                              sums = solve_densely(transport.patch_form_factors, albedos,
                                                    std::vector<double>(patches, 1.0));
     // What is left of a residual adds up to that; products round what they multiply to nothing.
     const double tolerance = 2 * kResidual * *std::ranges::max_element(sums);
@@ -88,20 +89,20 @@ TEST(Orthomin, AgreesWithEliminationAtAnyAlbedo) {
 // sees one of each pair.
 TEST(Orthomin, LightStaysInDeepPits) {
   constexpr uint32_t kPairs = 7;
-  FormFactorMatrix links = make_form_factors(2 * kPairs + 1, 2 * kPairs + 1);
+  FormFactorMatrix form_factors = make_form_factors(2 * kPairs + 1, 2 * kPairs + 1);
   std::vector<FormFactor> sky;
   for (uint32_t pair = 0; pair < kPairs; ++pair) {
     const float lost = std::ldexp(1.0f, -6 - static_cast<int>(pair));
-    append_row(links.blocks[0], std::vector<FormFactor>{{2 * pair + 1, 1 - lost}, {2 * kPairs, lost}});
-    append_row(links.blocks[0], std::vector<FormFactor>{{2 * pair, 1.0f}});
+    append_row(form_factors.blocks[0], std::vector<FormFactor>{{2 * pair + 1, 1 - lost}, {2 * kPairs, lost}});
+    append_row(form_factors.blocks[0], std::vector<FormFactor>{{2 * pair, 1.0f}});
     sky.push_back({2 * pair, 0.5f / 8});
   }
-  append_row(links.blocks[0], sky);
-  finish_blocks(links);
+  append_row(form_factors.blocks[0], sky);
+  finish_blocks(form_factors);
   // All in rows that add up to 1 with their sky, so that light is 1 everywhere.
-  std::vector<double> direct = row_sums(links);
+  std::vector<double> direct = row_sums(form_factors);
   for (double& value : direct) value = 1 - value;
-  Orthomin solver(links, {}, std::vector<double>(direct.size()), direct);
+  Orthomin solver(form_factors, {}, std::vector<double>(direct.size()), direct);
   int products = 0;
   while (solver.largest_residual() > 1e-14 && solver.step()) ++products;
   EXPECT_LE(products, 8 + 2 * 3);  // eight before the groups; then all pairs are alike: two ways to go
@@ -112,20 +113,20 @@ TEST(Orthomin, LightStaysInDeepPits) {
 TEST(Orthomin, TakesAFractionOfTheBounces) {
   // Rows add up to 1 to the rounding of E₀ to float, 3·10⁻⁸, which a pit multiplies by the bounces it needs.
   constexpr double kTolerance = 1e-5;
-  const LightTransport seen = see(white_noise_surface(20, 20, 0.5));
-  const std::vector<double> direct = direct_of(seen);
+  const LightTransport transport = see(white_noise_surface(20, 20, 0.5));
+  const std::vector<double> direct = direct_of(transport);
   const auto furthest = [](const std::vector<double>& light) {
     double distance = 0;
     for (const double value : light) distance = std::max(distance, std::abs(1 - value));
     return distance;
   };
-  Orthomin solver(seen.patch_form_factors, {}, std::vector<double>(direct.size()), direct);
+  Orthomin solver(transport.patch_form_factors, {}, std::vector<double>(direct.size()), direct);
   int products = 0, bounces = 0;
   while (furthest(solver.light()) > kTolerance && solver.step()) ++products;
   EXPECT_LE(furthest(solver.light()), kTolerance);
   std::vector<double> last = direct, sum = direct, next;
   for (; furthest(sum) > kTolerance && bounces < 5000; ++bounces) {
-    apply_transport(seen.patch_form_factors, {}, last, next);
+    apply_transport(transport.patch_form_factors, {}, last, next);
     last.swap(next);
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += last[i];
   }
@@ -133,20 +134,20 @@ TEST(Orthomin, TakesAFractionOfTheBounces) {
 }
 
 TEST(Orthomin, EndsWhereNothingIsLeft) {
-  const LightTransport seen = see(white_noise_surface(8, 8, 0.1));
-  const size_t patches = seen.patch_form_factors.rows;
-  Orthomin dark(seen.patch_form_factors, {}, std::vector<double>(patches), std::vector<double>(patches));
+  const LightTransport transport = see(white_noise_surface(8, 8, 0.1));
+  const size_t patches = transport.patch_form_factors.rows;
+  Orthomin dark(transport.patch_form_factors, {}, std::vector<double>(patches), std::vector<double>(patches));
   EXPECT_FALSE(dark.step());
   EXPECT_EQ(dark.largest_residual(), 0);
 }
 
 TEST(Orthomin, SameBytesAtAnyThreadCount) {
-  const LightTransport seen = see(white_noise_surface(48, 48, 0.1));
+  const LightTransport transport = see(white_noise_surface(48, 48, 0.1));
   std::vector<double> one, two;
   set_thread_count(1);
-  solve(seen, {}, 1e-8, one);
+  solve(transport, {}, 1e-8, one);
   set_thread_count(2);
-  solve(seen, {}, 1e-8, two);
+  solve(transport, {}, 1e-8, two);
   set_thread_count(0);
   EXPECT_EQ(one, two);
 }

@@ -1,4 +1,4 @@
-// The referee where light has a closed form: FACTS.md §6.
+// Tests the reference path tracer where light has a closed form.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -9,15 +9,15 @@
 #include "analytic/spherical_pit.h"
 #include "core/constants.h"
 #include "reference/path_tracer.h"
+#include "reference/texel_sample.h"
 #include "surface/synthetic/analytic.h"
 #include "surface/synthetic/synthetic.h"
-#include "reference/texel_sample.h"
 
 namespace hemibake {
 namespace {
 
 constexpr double kConfidence = 0.99;
-constexpr double kWidestInterval = 0.005;  // relative, issue 4
+constexpr double kWidestInterval = 0.005;  // relative
 constexpr int kBounces = 5;
 
 // A map of few texels: its walls are the exact groove at any resolution, and rays are short.
@@ -52,7 +52,7 @@ void expect_groove(double psi, int paths) {
   expect_holds(referee_interval(measured, 0, kBounces + 1, kConfidence), total, "total");
 }
 
-TEST(GrooveReference, HasTheDigitsOfTheFacts) {
+TEST(GrooveReference, HasTheDigitsOfTwoQuadratures) {
   const double tolerance = 4e-6;  // of two integrals by trapezoids, see groove_reference.h
   const std::vector<double> at_45{.7071068, .1963495, .0629587, .0215180, .0076349};
   const std::vector<double> at_30{.5, .2267249, .1175442, .0646952, .0368762};
@@ -63,11 +63,11 @@ TEST(GrooveReference, HasTheDigitsOfTheFacts) {
   }
 }
 
-TEST(RefereeClosedForms, GrooveOf45Degrees) { expect_groove(kPi / 4, 3'800'000); }
+TEST(PathTracerClosedForms, GrooveOf45Degrees) { expect_groove(kPi / 4, 3'800'000); }
 
-TEST(RefereeClosedForms, GrooveOf30Degrees) { expect_groove(kPi / 6, 2'500'000); }
+TEST(PathTracerClosedForms, GrooveOf30Degrees) { expect_groove(kPi / 6, 2'500'000); }
 
-TEST(RefereeClosedForms, GrooveVertexAndWallTexels) {
+TEST(PathTracerClosedForms, GrooveVertexAndWallTexels) {
   const double psi = kPi / 6;
   const Surface surface = make_groove(psi);
   const GrooveGeometry groove = groove_geometry(surface.width(), psi);
@@ -98,7 +98,7 @@ TEST(RefereeClosedForms, GrooveVertexAndWallTexels) {
   EXPECT_NEAR(ao[1], std::acos(f) / kPi, tolerance(std::acos(f) / kPi));
 }
 
-TEST(RefereeClosedForms, SphericalPitIsTheSameEverywhere) {
+TEST(PathTracerClosedForms, SphericalPitIsTheSameEverywhere) {
   const SphericalPit pit = make_spherical_pit(128, kPi / 3);
   const double c = pit.escape_share;
   RefereeOptions options;
@@ -118,7 +118,7 @@ TEST(RefereeClosedForms, SphericalPitIsTheSameEverywhere) {
   }
 }
 
-TEST(RefereeClosedForms, BowlMapUpToItsRim) {
+TEST(PathTracerClosedForms, BowlMapUpToItsRim) {
   // The cells across the rim of `synth bowl` cut from the sphere to the flat ground, so that the rim is known
   // to half a texel: ½/(R cos T) of polar angle, which moves C = (1 + cos T)/2 by ½ sin T times that, with R
   // = r/sin T.
@@ -152,7 +152,7 @@ TEST(RefereeClosedForms, BowlMapUpToItsRim) {
   }
 }
 
-TEST(RefereeClosedForms, IntervalsHoldTheTruthAsOftenAsTheySay) {
+TEST(PathTracerClosedForms, IntervalsHoldTheTruthAsOftenAsTheySay) {
   const double psi = kPi / 6;
   const Surface surface = make_groove(psi);
   const std::vector<double> truth = groove_wall_means(psi, kBounces);

@@ -1,0 +1,142 @@
+#include "cli/render_scene.h"
+
+#include <fmt/format.h>
+
+#include "cli/bake_surface.h"
+#include "cli/name_file.h"
+#include "cli/retrace.h"
+#include "core/error.h"
+#include "core/interrupt.h"
+#include "curves/curves.h"
+#include "fitting/fitted_model.h"
+#include "fitting/models.h"
+#include "io/fit_file.h"
+#include "io/image_io.h"
+#include "io/table_io.h"
+#include "lighting/light_scene.h"
+
+namespace hemibake {
+namespace {
+
+constexpr int kBins = 100;
+
+Albedo read_albedo(const RenderOptions& options, const Bake& bake) {
+  if (const auto constant = albedo_from_text(options.albedo)) return {*constant, {}};
+  ColorImage image = read_color_image(options.albedo);
+  if (image.colors.width != bake.width || image.colors.height != bake.height)
+    throw InputError(fmt::format("{}: is {} x {} texels, expected {} x {} as the bake is", options.albedo,
+                                 image.colors.width, image.colors.height, bake.width, bake.height));
+  const bool srgb =
+      options.albedo_encoding == "srgb" || (options.albedo_encoding == "auto" && image.stored_as_integers);
+  return with_file_context(options.albedo, [&] {
+    return make_albedo_map(std::move(image.colors), srgb ? AlbedoEncoding::kSrgb : AlbedoEncoding::kLinear);
+  });
+}
+
+Sky read_sky(const RenderOptions& options) {
+  if (options.sky_file().empty()) return make_uniform_sky();
+  const std::filesystem::path path = options.sky_file();
+  Sky sky;
+  if (options.sky_is_harmonics()) {
+    const std::vector<double> numbers = read_numbers(path, 3 * kHarmonics);
+    for (size_t i = 0; i < kHarmonics; ++i)
+      sky.harmonics[i] = {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
+    return sky;
+  }
+  Grid<glm::vec3> image = read_color_image(path).colors;
+  sky = with_file_context(path, [&] { return make_lat_long_sky(std::move(image)); });
+  if (options.sky_truth == "sh") sky.lat_long = {};
+  return sky;
+}
+
+template <class Model>
+ShadingModel shading_model(std::string name, const Model& model) {
+  return {std::move(name), [model](double ao, double albedo) { return model.total(ao, albedo); },
+          [model](double ao) { return model.direct(ao); },
+          [model](double ao) { return model.first_bounce(ao); },
+          [model](double ao) { return model.bounce_ratio(ao); }};
+}
+
+// Returns the model of --fit, or of the bake's own curves. Returns none and its `reason` if these do not
+// suffice.
+std::optional<ShadingModel> find_model(const RenderOptions& options, const Bake& bake, std::string& reason) {
+  FitFile fits;
+  std::filesystem::path path = options.fit;
+  if (!path.empty()) {
+    fits = read_fits(path);
+  } else {
+    path = options.bake;
+    try {
+      fits.fits = fit_model(options.model, make_curves(bake, kBins), Abscissa::kCenter, Weights::kNone);
+    } catch (const std::runtime_error& error) {
+      throw_if_interrupted();
+      reason = error.what();
+      return std::nullopt;
+    }
+  }
+  const ShaderModel model = with_file_context(
+      path, [&] { return fitted_model(fits.fits, model_kind_from_string(options.model)); });
+  return std::visit([&](const auto& m) { return shading_model(options.model, m); }, model);
+}
+
+// Returns the bake's form factors: of its links file, or traced again.
+LightTransport transport_of(const RenderOptions& options, const BakeFile& file, const BakeOptions& tracing,
+                            const Surface& surface) {
+  LightTransport transport =
+      options.links.empty() ? retrace(tracing) : visibility_from_links(options.links, file);
+  const PatchSet patches = patches_of_transport(surface, transport);
+  if (transport.final_gather.columns != patches.count)
+    throw InputError(fmt::format("{}: has {} patches, expected {} as this version makes of the map",
+                                 options.links.string(), transport.final_gather.columns, patches.count));
+  return transport;
+}
+
+// Lights the scene by sky and sun over the form factors of the bake.
+void relight(const RenderOptions& options, const BakeFile& file, const BakeOptions& tracing,
+             const SceneLight& light, RenderedScene& result) {
+  ShadedScene& scene = result.scene;
+  const size_t stored = file.bake.irradiance.size();
+  LitScene lit =
+      light_scene(*scene.surface, transport_of(options, file, tracing, *scene.surface), scene.albedo, light,
+                  stored > 1 ? static_cast<int>(stored) - 1 : BakeOptions().bounces);
+  scene.sun = std::move(lit.sun);
+  scene.truth = std::move(lit.relit);
+  result.projection_error = lit.projection_error;
+}
+
+}  // namespace
+
+RenderedScene shade_scene(const RenderOptions& options, BakeFile file) {
+  RenderedScene result;
+  ShadedScene& scene = result.scene;
+  const Bake& bake = file.bake;
+  scene.albedo = read_albedo(options, bake);
+  const SceneLight light{read_sky(options), sun_from_text(options.sun), options.sky_rays};
+  const bool runs_again = needs_transport(light, scene.albedo);
+
+  BakeOptions tracing;
+  try {
+    tracing = tracing_options_from(file, options.bake);
+    scene.surface = load_bake_map(tracing).surface;
+    if (scene.surface->width() != bake.width || scene.surface->height() != bake.height)
+      throw InputError(options.bake.string() + ": its map has another size, expected the bake's");
+  } catch (const InputError& error) {
+    if (runs_again) throw;
+    scene.surface.reset();
+    result.no_map = error.what();
+  }
+
+  scene.sky =
+      unshaded_sky(light.sky, bake.normals.empty() && scene.surface ? scene.surface->normals : bake.normals,
+                   bake.width, bake.height);
+  scene.model = find_model(options, bake, result.no_model);
+  if (runs_again) {
+    relight(options, file, tracing, light, result);
+  } else if (!bake.irradiance.empty()) {
+    scene.truth = relight_constant(bake.irradiance, scene.albedo.constant);
+  }
+  scene.bake = std::move(file.bake);
+  return result;
+}
+
+}  // namespace hemibake
