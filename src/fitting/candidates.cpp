@@ -8,6 +8,7 @@
 #include "fitting/least_squares.h"
 #include "fitting/mayaux2018.h"
 #include "model/closed_forms.h"
+#include "model/model.h"
 
 namespace hemibake {
 namespace {
@@ -112,41 +113,21 @@ Prediction with_quotient(const Curves& curves, DirectModel direct) {
                        });
 }
 
-struct Mayaux2018Constants {
-  double k, e, a, b;
-
-  explicit Mayaux2018Constants(const Curves& curves) {
-    const Fit direct = fit_direct(points_of(curves, 0));
-    const Fit first = fit_first_bounce(points_of(curves, 1));
-    k = parameter_value(direct, "k");
-    e = parameter_value(direct, "e");
-    a = parameter_value(first, "A");
-    b = parameter_value(first, "B");
-  }
-};
-
-Prediction mayaux2018(const Curves& curves) {
-  return [c = Mayaux2018Constants(curves)](double ao, double, double albedo) {
-    const double direct = direct_factor(ao, c.k, c.e);
-    const double first = first_bounce_factor(ao, c.a, c.b);
-    return direct + albedo * first / (1 - albedo * (1 - first / (1 - direct)));
-  };
+Mayaux2018Model fit_formulas(const Curves& curves) {
+  const Fit direct = fit_direct(points_of(curves, 0));
+  const Fit first = fit_first_bounce(points_of(curves, 1));
+  return {parameter_value(direct, "k"), parameter_value(direct, "e"), parameter_value(first, "A"),
+          parameter_value(first, "B")};
 }
 
-Prediction guarded_mayaux2018(const Curves& curves) {
-  return [c = Mayaux2018Constants(curves)](double ao, double, double albedo) {
-    const double direct = std::min(direct_factor(ao, c.k, c.e), 1.0);
-    const double blocked = 1 - direct;
-    const double first = first_bounce_factor(ao, c.a, c.b);
-    return total_factor(direct, blocked, first < blocked ? std::max(first / blocked, kSmallestEscape) : 1.0,
-                        albedo);
-  };
+template <class Model>
+Prediction total_of(const Model& model) {
+  return [model](double ao, double, double albedo) { return model.total(ao, albedo); };
 }
 
-Prediction jimenez_of(const std::array<double, 6>& p, bool over_ao) {
-  return [p, over_ao](double ao, double visibility, double albedo) {
-    const double v = over_ao ? ao : visibility;
-    return std::max(v, jimenez_cubic(v, albedo, p.data()));
+Prediction jimenez_of(const JimenezModel& model, bool over_ao) {
+  return [model, over_ao](double ao, double visibility, double albedo) {
+    return model.total(over_ao ? ao : visibility, albedo);
   };
 }
 
@@ -155,9 +136,9 @@ Prediction jimenez_refit(const Curves& curves, bool over_ao) {
   const Fit fit =
       fit_jimenez(over_ao ? totals_of(curves) : visibility_points(curves, albedos, Weights::kNone),
                   static_cast<int>(albedos.size()));
-  std::array<double, 6> p;
-  for (size_t i = 0; i < 6; ++i) p[i] = fit.parameters[i].value;
-  return jimenez_of(p, over_ao);
+  JimenezModel model;
+  for (size_t i = 0; i < 6; ++i) model.parameters[i] = fit.parameters[i].value;
+  return jimenez_of(model, over_ao);
 }
 
 double populated_bins(const Curves& curves) {
@@ -174,8 +155,9 @@ Curves all_but(std::vector<Curves> sets, size_t left_out) {
 
 const std::vector<Candidate>& candidates() {
   static const std::vector<Candidate> all = {
-      {"published", "k, e; A, B", 4, mayaux2018},
-      {"published, cut", "the same, F0 <= 1 and 0 <= tau <= 1", 4, guarded_mayaux2018},
+      {"published", "k, e; A, B", 4, [](const Curves& curves) { return total_of(fit_formulas(curves)); }},
+      {"published, cut", "the same, F0 <= 1 and 0 <= tau <= 1", 4,
+       [](const Curves& curves) { return total_of(GuardedModel{fit_formulas(curves)}); }},
       {"line, power", "s = k; 1-tau = F0^n", 2,
        [](const Curves& curves) { return with_power(curves, fit_line(curves)); }},
       {"bounded, power", "s = k0..k1; 1-tau = F0^n", 3,
@@ -190,10 +172,8 @@ const std::vector<Candidate>& candidates() {
        [](const Curves& curves) { return with_quotient(curves, fit_overhead(curves)); }},
       {"bounded", "s = k0..k1; 1-tau = q(1 - d(1-F0)/(1+3F0))", 4,
        [](const Curves& curves) { return with_quotient(curves, fit_both(curves)); }},
-      {"Jimenez 2016", "their constants, V = E0/pi", 0,
-       [](const Curves&) { return jimenez_of(kJimenezConstants, false); }},
-      {"Jimenez 2016, ao", "their constants, V = a", 0,
-       [](const Curves&) { return jimenez_of(kJimenezConstants, true); }},
+      {"Jimenez 2016", "their constants, V = E0/pi", 0, [](const Curves&) { return jimenez_of({}, false); }},
+      {"Jimenez 2016, ao", "their constants, V = a", 0, [](const Curves&) { return jimenez_of({}, true); }},
       {"Jimenez, refit", "V = E0/pi", 6, [](const Curves& curves) { return jimenez_refit(curves, false); }},
       {"Jimenez, refit, ao", "V = a", 6, [](const Curves& curves) { return jimenez_refit(curves, true); }},
   };
