@@ -1,7 +1,5 @@
 #include "bake/target_error.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -15,8 +13,6 @@
 namespace hemibake {
 namespace {
 
-// Tracers answer sixteen neighbours together, so a sample is made of blocks of sixteen.
-constexpr int kBlockTexels = 16;
 constexpr size_t kPilotBlocks = 96, kCheckBlocks = 96;
 constexpr double kLargestShare = 0.25;  // of the map that is sampled
 constexpr double kTruncationShare = 0.25;
@@ -34,8 +30,8 @@ std::vector<Block> sample_blocks(const Surface& surface, size_t wanted, uint64_t
   std::vector<Block> blocks;
   const uint32_t width = static_cast<uint32_t>(surface.width());
   for (uint32_t y = 0; y < static_cast<uint32_t>(surface.height()); ++y)
-    for (uint32_t x = 0; x < width; x += kBlockTexels)
-      blocks.push_back({y * width + x, std::min<uint32_t>(kBlockTexels, width - x)});
+    for (uint32_t x = 0; x < width; x += kSampleBlockTexels)
+      blocks.push_back({y * width + x, std::min<uint32_t>(kSampleBlockTexels, width - x)});
   const size_t share = static_cast<size_t>(std::ceil(kLargestShare * static_cast<double>(blocks.size())));
   const size_t count = std::min(wanted, share);
   // Fisher-Yates, only as far as needed.
@@ -48,12 +44,12 @@ std::vector<Block> sample_blocks(const Surface& surface, size_t wanted, uint64_t
 }
 
 // E/π of the patches at each albedo; empty without light.
-using PatchLight = std::array<std::vector<double>, kTradeAlbedos.size()>;
+using PatchLight = std::array<std::vector<double>, kJudgedAlbedos.size()>;
 
 // What the sampled texels see, block after block.
 struct SampleValues {
   std::vector<double> ao, direct;
-  std::array<std::vector<double>, kTradeAlbedos.size()> light;
+  std::array<std::vector<double>, kJudgedAlbedos.size()> light;
 };
 
 SampleValues trace_sample(const Tracer& tracer, const std::vector<Block>& blocks, const PatchLight& patches) {
@@ -74,11 +70,11 @@ SampleValues trace_sample(const Tracer& tracer, const std::vector<Block>& blocks
         const size_t at = begin[b] + i;
         values.ao[at] = rows[i].visible_fraction;
         values.direct[at] = rows[i].direct_over_pi;
-        for (size_t a = 0; with_light && a < kTradeAlbedos.size(); ++a) {
+        for (size_t a = 0; with_light && a < kJudgedAlbedos.size(); ++a) {
           double reflected = 0;
           for (const FormFactor& link : rows[i].links)
             reflected += static_cast<double>(link.weight) * patches[a][link.patch];
-          values.light[a][at] = rows[i].direct_over_pi + kTradeAlbedos[a] * reflected;
+          values.light[a][at] = rows[i].direct_over_pi + kJudgedAlbedos[a] * reflected;
         }
       }
     }
@@ -125,7 +121,7 @@ std::unique_ptr<Tracer> reference_tracer(const Surface& surface, const TargetOpt
 
 // The fewest bounces that leave out at most `allowed` (rms of E/π over texels) at the highest albedo.
 int choose_bounces(const LightTransport& rough, double allowed, double& truncation) {
-  const double albedo = kTradeAlbedos.back();
+  const double albedo = kJudgedAlbedos.back();
   const std::vector<double> whole = light_at(rough, albedo, std::nullopt).texel_light;
   const auto left_out = [&](int bounces) {
     return rms_between(whole, light_at(rough, albedo, bounces).texel_light);
@@ -163,14 +159,16 @@ double TargetErrors::worst() const { return std::max({ao, direct, *std::ranges::
 TargetChoice choose_for_target(const Surface& surface, const TargetOptions& options) {
   const double cpu_start = process_cpu_seconds();
   TargetChoice choice;
+  choice.error = options.error;
+  choice.with_light = options.with_light;
   PatchLight patches;
   if (options.with_light) {
     const int rough_rays = static_cast<int>(kRoughFactor * options.fewest_rays);
     const auto tracer = options.make_tracer(rough_rays, mix_bits(options.seed, kPilotStream, 2));
     const LightTransport rough = trace_surface(*tracer, true);
     choice.bounces = choose_bounces(rough, kTruncationShare * options.error, choice.truncation);
-    for (size_t a = 0; a < kTradeAlbedos.size(); ++a)
-      patches[a] = light_at(rough, kTradeAlbedos[a], std::nullopt).patch_light;
+    for (size_t a = 0; a < kJudgedAlbedos.size(); ++a)
+      patches[a] = light_at(rough, kJudgedAlbedos[a], std::nullopt).patch_light;
   }
 
   const std::vector<Block> blocks = sample_blocks(surface, kPilotBlocks, kPilotStream, options.seed);
@@ -191,64 +189,21 @@ TargetChoice choose_for_target(const Surface& surface, const TargetOptions& opti
   return choice;
 }
 
-std::string explain(const TargetChoice& choice, const TargetOptions& options) {
-  std::string text = fmt::format(
-      "target    rms error of AO, E0/pi{} at most {:g}\n"
-      "pilot     {} texels in blocks of {}, against slices with {} azimuths ({:.2f} cpu-s)\n",
-      options.with_light ? " and E/pi at albedo 0.2 to 0.95" : "", options.error, choice.sampled_texels,
-      kBlockTexels, choice.reference_azimuths, choice.pilot_cpu_seconds);
-  for (const PilotRung& rung : choice.pilot) {
-    text += fmt::format("          {:5} rays: AO {:.5f}, E0/pi {:.5f}", rung.rays, rung.error.ao,
-                        rung.error.direct);
-    for (size_t a = 0; options.with_light && a < kTradeAlbedos.size(); ++a)
-      text +=
-          fmt::format("{}{:g} {:.5f}", a == 0 ? ", E/pi at " : ", ", kTradeAlbedos[a], rung.error.light[a]);
-    text += "\n";
-  }
-  if (options.with_light)
-    text += fmt::format(
-        "bounces   {}: later ones would add {:.5f} rms at albedo {:g}, at most a quarter of the target\n",
-        choice.bounces, choice.truncation, kTradeAlbedos.back());
-  text +=
-      fmt::format("rays      {}: {}\n", choice.rays,
-                  !choice.reachable         ? "the most there may be, and not enough"
-                  : choice.pilot.size() < 2 ? "the fewest there are, and enough"
-                                            : "where the power law between the last two reaches the target");
-  return text;
-}
-
-nlohmann::ordered_json json_from_choice(const TargetChoice& choice) {
-  nlohmann::ordered_json json = {{"rays", choice.rays},
-                                 {"bounces", choice.bounces},
-                                 {"reachable", choice.reachable},
-                                 {"sampled_texels", choice.sampled_texels},
-                                 {"reference_azimuths", choice.reference_azimuths},
-                                 {"truncation", choice.truncation},
-                                 {"pilot_cpu_seconds", choice.pilot_cpu_seconds},
-                                 {"pilot", nlohmann::ordered_json::array()}};
-  for (const PilotRung& rung : choice.pilot)
-    json["pilot"].push_back({{"rays", rung.rays},
-                             {"ao", rung.error.ao},
-                             {"direct", rung.error.direct},
-                             {"light", rung.error.light}});
-  return json;
-}
-
 TargetErrors measure_reached(const Surface& surface, const LightTransport& seen, int bounces,
                              const TargetOptions& options) {
   const std::vector<Block> blocks = sample_blocks(surface, kCheckBlocks, kCheckStream, options.seed);
   PatchLight patches;
-  std::array<std::vector<double>, kTradeAlbedos.size()> texels;
-  for (size_t a = 0; options.with_light && a < kTradeAlbedos.size(); ++a) {
-    patches[a] = light_at(seen, kTradeAlbedos[a], std::nullopt).patch_light;
-    texels[a] = light_at(seen, kTradeAlbedos[a], bounces).texel_light;
+  std::array<std::vector<double>, kJudgedAlbedos.size()> texels;
+  for (size_t a = 0; options.with_light && a < kJudgedAlbedos.size(); ++a) {
+    patches[a] = light_at(seen, kJudgedAlbedos[a], std::nullopt).patch_light;
+    texels[a] = light_at(seen, kJudgedAlbedos[a], bounces).texel_light;
   }
   SampleValues baked;
   for (const Block& block : blocks) {
     for (uint32_t texel = block.first; texel < block.first + block.count; ++texel) {
       baked.ao.push_back(static_cast<double>(seen.visible_fraction[texel]));
       baked.direct.push_back(static_cast<double>(seen.direct_over_pi[texel]));
-      for (size_t a = 0; options.with_light && a < kTradeAlbedos.size(); ++a)
+      for (size_t a = 0; options.with_light && a < kJudgedAlbedos.size(); ++a)
         baked.light[a].push_back(texels[a][texel]);
     }
   }

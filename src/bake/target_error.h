@@ -5,21 +5,24 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "surface/surface.h"
 #include "tracers/tracer.h"
-#include "trade/trade_run.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {
 
-// rms over texels. Light is E/π over all bounces at each of kTradeAlbedos; all 0 without light.
+// Albedos at which all bounces are summed and compared.
+inline constexpr std::array<double, 4> kJudgedAlbedos = {0.2, 0.5, 0.8, 0.95};
+// Tracers answer sixteen neighbours together, so a sample is made of blocks of sixteen texels.
+inline constexpr int kSampleBlockTexels = 16;
+
+// rms over texels. Light is E/π over all bounces at each of kJudgedAlbedos; all 0 without light.
 struct TargetErrors {
   double ao = 0;      // α
   double direct = 0;  // E₀/π
-  std::array<double, kTradeAlbedos.size()> light{};
+  std::array<double, kJudgedAlbedos.size()> light{};
 
   double worst() const;
 };
@@ -40,6 +43,8 @@ struct PilotRung {
 };
 
 struct TargetChoice {
+  double error = 0;  // wanted
+  bool with_light = true;
   int rays = 0;
   int bounces = 0;
   bool reachable = true;  // false: most_rays are not enough
@@ -55,13 +60,6 @@ struct TargetChoice {
 // the error wanted less what the bounces leave out. Bounces: the fewest that leave out at most a quarter of
 // the error wanted at the highest albedo.
 TargetChoice choose_for_target(const Surface& surface, const TargetOptions& options);
-
-// The reasoning, a line per step.
-std::string explain(const TargetChoice& choice, const TargetOptions& options);
-
-// {"rays", "bounces", "reachable", "sampled_texels", "reference_azimuths", "truncation", "pilot_cpu_seconds",
-// "pilot": [{"rays", "ao", "direct", "light": [one per albedo]}]}
-nlohmann::ordered_json json_from_choice(const TargetChoice& choice);
 
 // The error of a bake: another sample of its texels against slices with many azimuths. seen: the bake's, with
 // links where options.with_light. The patches' own noise is in both and only seen through the texels' sums.

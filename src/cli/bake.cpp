@@ -1,76 +1,81 @@
+#include "bake/bake.h"
+
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
-#include "cli/bake_job.h"
-#include "cli/commands.h"
-#include "cli/common_options.h"
-#include "cli/replay.h"
-#include "cli/validators.h"
+#include "bake/record.h"
+#include "bake/replay.h"
+#include "bake/write.h"
+#include "cli/options/bake_options.h"
+#include "cli/print/bake.h"
+#include "cli/print/replay.h"
+#include "cli/print/warnings.h"
 #include "core/error.h"
-#include "io/bake_file.h"
-#include "surface/surface.h"
+#include "io/file_context.h"
 
 namespace hemibake {
 namespace {
 
-struct BakeCommandOptions {
-  CommonOptions common;
-  BakeOptions bake;
-  std::string output;
+struct BakeCommandOptions : BakeOptions {
+  std::filesystem::path output;
   std::vector<int> texel;
   bool dry_run = false;
+
+  bool writes() const { return texel.empty() && !dry_run; }
 };
 
-int run_bake(const CLI::App& app, BakeCommandOptions& options) {
-  apply_common_options(options.common);
-  settle_bake_options(app, options.bake);
-  const bool writes = options.texel.empty() && !options.dry_run;
-  if (writes && options.output.empty()) throw InputError("--output: missing, expected -o BAKE.exr");
-  if (writes) check_bake_output(options.bake, options.output, {".exr"});
-  if (writes && !options.bake.links.empty())
-    check_bake_output(options.bake, options.bake.links, {".h5", ".hdf5"});
+void check_outputs(const BakeCommandOptions& options) {
+  if (options.output.empty()) throw InputError("--output: missing, expected -o BAKE.exr");
+  check_bake_output(options.map, options.output, {".exr"});
+  if (!options.links.empty()) check_bake_output(options.map, options.links, {".h5", ".hdf5"});
+}
 
-  BakeJob job;
-  job.spill_folder = std::filesystem::path(options.output).parent_path();
-  prepare_bake(options.bake, !writes, job);
+int run_bake(BakeCommandOptions& options, const Invocation& invocation) {
+  resolve(options, invocation);
+  if (options.writes()) check_outputs(options);
+  options.bake.spill_folder = options.output.parent_path();
+  const LoadedMap map = load_map(options.map, options.bake.normal_length);
+  const PreparedBake prepared = with_file_context(options.map.map, [&] {
+    return prepare_bake(map, options.bake,
+                        options.writes() ? MemoryLimit::kEnforced : MemoryLimit::kPlannedOnly);
+  });
   if (!options.texel.empty()) {
-    const Replay replay = replay_texel(job, options.texel[0], options.texel[1]);
-    print_result(options.common, json_from_replay(replay), describe_replay(replay));
+    const Replay replay = with_file_context(
+        options.map.map, [&] { return replay_texel(prepared, options.texel[0], options.texel[1]); });
+    invocation.print(json_from_replay(replay), describe_replay(replay));
     return 0;
   }
   if (options.dry_run) {
-    print_result(options.common, json_from_plan(job), describe_plan(job));
+    invocation.print(json_from_plan(prepared.plan), describe_plan(prepared));
     return 0;
   }
-  const BakeResult result = perform_bake(job);
-  write_bake(options.output, result.bake, result.provenance);
-  for (const std::string& warning : result.warnings)
-    fmt::print(stderr, "hemibake: {}: warning: {}\n", options.bake.map.string(), warning);
-  print_result(options.common, json_from_bake(job, result), describe_bake(job, result));
+  const BakeResult result = bake(prepared);
+  const Provenance provenance = record_of(options.map, map, result, invocation.context.command);
+  write_results(result, provenance, options.output, options.links);
+  print_warnings(options.map.map.string(), warnings_of(result));
+  invocation.print(json_from_bake(result, provenance), describe_bake(options, result));
   return 0;
 }
 
 }  // namespace
 
-CommandBody setup_bake(CLI::App& app) {
+CommandSetup setup_bake() {
   auto options = std::make_shared<BakeCommandOptions>();
-  add_bake_options(app, options->bake);
-  app.add_option("-o,--output", options->output, "the bake to write, EXR")
-      ->option_text("BAKE.exr")
-      ->group("Output");
-  app.add_option("--texel", options->texel,
-                 "print the rays, hits and links of one texel instead, counted from 0")
-      ->check(whole_number_in(0, kMaxTexels - 1))
-      ->delimiter(',')
-      ->expected(2)
-      ->option_text("X,Y")
-      ->group("Output");
-  app.add_flag("--dry-run", options->dry_run, "say memory and work, bake nothing")->group("Output");
-  add_common_options(app, options->common);
-  return [&app, options] { return run_bake(app, *options); };
+  CommandSetup setup;
+  setup.fields = bake_options(*options);
+  append(
+      setup.fields,
+      {in_group(shown_as(output_option(options->output, "the bake to write, EXR"), "BAKE.exr"), "Output"),
+       in_group(shown_as(option("texel", whole_numbers(options->texel, 2, 0, int{kMaxTexels - 1}),
+                                "print the rays, hits and links of one texel instead, counted from 0"),
+                         "X,Y"),
+                "Output"),
+       in_group(option("dry-run", flag(options->dry_run), "say memory and work, bake nothing"), "Output")});
+  setup.run = [options](const Invocation& invocation) { return run_bake(*options, invocation); };
+  return setup;
 }
 
 }  // namespace hemibake

@@ -1,29 +1,34 @@
 #include "cli/commands.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <new>
 
+#include "bake/settings.h"
+#include "cli/options/parser.h"
+#include "cli/print/progress_line.h"
+#include "cli/signals.h"
 #include "core/error.h"
+#include "io/provenance.h"
 
 namespace hemibake {
 
 // One per file in cli/.
-CommandBody setup_compare(CLI::App& app);
-CommandBody setup_curves(CLI::App& app);
-CommandBody setup_export(CLI::App& app);
-CommandBody setup_fit(CLI::App& app);
-CommandBody setup_render(CLI::App& app);
-CommandBody setup_report(CLI::App& app);
-CommandBody setup_synth(CLI::App& app);
-CommandBody setup_bake(CLI::App& app);
-CommandBody setup_check(CLI::App& app);
-CommandBody setup_run(CLI::App& app);
-CommandBody setup_trade(CLI::App& app);
+CommandSetup setup_synth();
+CommandSetup setup_bake();
+CommandSetup setup_curves();
+CommandSetup setup_fit();
+CommandSetup setup_compare();
+CommandSetup setup_export();
+CommandSetup setup_render();
+CommandSetup setup_check();
+CommandSetup setup_run();
+CommandSetup setup_trade();
+CommandSetup setup_report();
 
 namespace {
 
@@ -49,7 +54,7 @@ constexpr std::array kCommands = {
     Command{"report", "one self-contained HTML page of what 'run' wrote", setup_report},
 };
 
-// One line, whatever a file name or a library puts into it.
+// Prints one line, whatever a file name or a library puts into it.
 int fail(int code, std::string message) {
   std::ranges::replace_if(
       message, [](unsigned char c) { return c < ' '; }, ' ');
@@ -57,63 +62,39 @@ int fail(int code, std::string message) {
   return code;
 }
 
-// An unset shell variable in quotes is never what was meant: `--links "$LINKS"` would write no links and say
-// nothing.
-void refuse_empty_arguments(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i)
-    if (*argv[i] == '\0')
-      throw InputError(fmt::format("{}: is followed by an empty argument, expected a name or a value",
-                                   i == 1 ? "hemibake" : argv[i - 1]));
+Context context_of(const ParsedCommand& parsed, int argc, char** argv) {
+  Context context;
+  context.threads = parsed.threads;
+  if (isatty(STDERR_FILENO) == 1) context.progress = draw_progress_line;
+  context.cancel = &install_signal_handlers();
+  context.command = command_line({argv, argv + argc});
+  return context;
 }
 
-// What CLI11 says of a command that is missing or unknown names neither it nor the others.
-std::string describe_error(const CLI::ParseError& error, const CLI::App& app, int argc, char** argv) {
-  if (!app.get_subcommands().empty()) return error.what();
-  std::string names;
-  for (const Command& command : kCommands) names += (names.empty() ? "" : ", ") + std::string(command.name);
-  return fmt::format("{}, expected one of {}",
-                     argc > 1 ? fmt::format("'{}' is no command", argv[1]) : "no command", names);
+int run(const ParsedCommand& parsed, const Context& context) {
+  const ContextScope scope(context);
+  return parsed.setup.run({context, parsed.given, parsed.json});
 }
 
-int run_guarded(const CommandBody& body) {
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
   try {
-    return body();
+    const auto parsed = parse_command_line(argc, argv, kCommands);
+    return parsed ? run(*parsed, context_of(*parsed, argc, argv)) : 0;
+  } catch (const SettingError& error) {
+    return fail(kExitBadInput, std::string("--") + error.what());
   } catch (const InputError& error) {
     return fail(kExitBadInput, error.what());
   } catch (const CheckError& error) {
     return fail(kExitFailedCheck, error.what());
-  } catch (const Interrupted&) {
+  } catch (const Cancelled&) {
     return fail(kExitInterrupted, "interrupted, no file was left half written");
   } catch (const std::bad_alloc&) {
     return fail(kExitBadInput, "out of memory, expected less work (see --dry-run and --memory)");
   } catch (const std::exception& error) {
     return fail(kExitFailedCheck, error.what());
   }
-}
-
-}  // namespace
-
-int run_command_line(int argc, char** argv) {
-  CLI::App app{"hemibake " HEMIBAKE_VERSION
-               ": bakes the light on a height map and fits models of it for shaders."};
-  app.set_version_flag("--version", HEMIBAKE_VERSION);
-  app.require_subcommand(1);
-  CommandBody chosen;
-  for (const Command& command : kCommands) {
-    CLI::App* sub = app.add_subcommand(command.name, command.summary);
-    CommandBody body = command.setup(*sub);
-    sub->callback([&chosen, body = std::move(body)] { chosen = body; });
-  }
-  try {
-    refuse_empty_arguments(argc, argv);
-    app.parse(argc, argv);
-  } catch (const InputError& error) {
-    return fail(kExitBadInput, error.what());
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return fail(kExitBadInput, describe_error(error, app, argc, argv));
-  }
-  return run_guarded(chosen);
 }
 
 }  // namespace hemibake

@@ -1,13 +1,11 @@
 #include "cli/print/compare.h"
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "cli/commands.h"
-#include "cli/common_options.h"
+#include "cli/options/command.h"
 #include "fitting/candidates.h"
 #include "io/curves_file.h"
 
@@ -15,31 +13,30 @@ namespace hemibake {
 namespace {
 
 struct CompareOptions {
-  CommonOptions common;
   std::vector<std::string> curves;
 };
 
-int run_compare(const CompareOptions& options) {
-  apply_common_options(options.common);
+int run_compare(const CompareOptions& options, const Invocation& invocation) {
   std::vector<Curves> sets;
   for (const std::string& path : options.curves) sets.push_back(read_curves(path));
   std::vector<ComparedCandidate> compared;
   for (const Candidate& candidate : candidates())
     compared.push_back({&candidate, compare_candidate(candidate, sets)});
-  print_result(options.common, json_from_comparisons(compared, options.curves),
-               text_from_comparisons(compared, options.curves));
+  invocation.print(json_from_comparisons(compared, options.curves),
+                   text_from_comparisons(compared, options.curves));
   return 0;
 }
 
 }  // namespace
 
-CommandBody setup_compare(CLI::App& app) {
+CommandSetup setup_compare() {
   auto options = std::make_shared<CompareOptions>();
-  app.add_option("CURVES", options->curves,
-                 "curves, CSV: each model is fitted to each of them, and to all the others together")
-      ->required();
-  add_common_options(app, options->common);
-  return [options] { return run_compare(*options); };
+  CommandSetup setup;
+  setup.fields = {
+      required(option("CURVES", texts(options->curves),
+                      "curves, CSV: each model is fitted to each of them, and to all the others together"))};
+  setup.run = [options](const Invocation& invocation) { return run_compare(*options, invocation); };
+  return setup;
 }
 
 }  // namespace hemibake

@@ -6,10 +6,10 @@
 #include <map>
 
 #include "bake/energy.h"
-#include "cli/name_file.h"
 #include "core/error.h"
 #include "curves/check_curves.h"
 #include "io/curves_file.h"
+#include "io/file_context.h"
 #include "io/fit_file.h"
 #include "io/output_file.h"
 #include "model/check_model.h"

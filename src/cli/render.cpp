@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/commands.h"
 #include "cli/render_options.h"
 #include "cli/render_scene.h"
 #include "cli/result_folder.h"
@@ -90,15 +88,14 @@ std::string describe(const RenderOptions& options, const nlohmann::ordered_json&
   return text + gallery.text();
 }
 
-int run_render(RenderOptions& options) {
-  apply_common_options(options.common);
-  settle_render_options(options);
+int run_render(RenderOptions& options, const Invocation& invocation) {
+  resolve(options);
   BakeFile file = read_bake(options.bake);
-  const Provenance provenance = make_provenance(command_line(process_arguments()), options.bake);
+  const Provenance provenance = make_provenance(invocation.context.command, options.bake);
   const ResultFolder folder(options.folder);
   check_output_path(options.folder / kRecord);
 
-  const RenderedScene rendered = shade_scene(options, std::move(file));
+  const RenderedScene rendered = shade_scene(options, std::move(file), invocation.context);
   const SceneImages shaded = make_scene_images(rendered.scene, options.picture);
   remove_earlier_pictures(options.folder);
   Gallery gallery(options.folder, provenance);
@@ -111,16 +108,18 @@ int run_render(RenderOptions& options) {
   json.update(gallery.json());
   write_json(options.folder / kRecord, json);
   json["cpu_seconds"] = process_cpu_seconds();
-  print_result(options.common, json, describe(options, json, gallery));
+  invocation.print(json, describe(options, json, gallery));
   return 0;
 }
 
 }  // namespace
 
-CommandBody setup_render(CLI::App& app) {
+CommandSetup setup_render() {
   auto options = std::make_shared<RenderOptions>();
-  add_render_options(app, *options);
-  return [options] { return run_render(*options); };
+  CommandSetup setup;
+  setup.fields = render_fields(*options);
+  setup.run = [options](const Invocation& invocation) { return run_render(*options, invocation); };
+  return setup;
 }
 
 }  // namespace hemibake

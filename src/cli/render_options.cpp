@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
-#include "cli/validators.h"
 #include "core/constants.h"
 #include "core/error.h"
 
@@ -45,87 +43,73 @@ bool RenderOptions::wants(const std::string& subject) const {
 
 std::filesystem::path RenderOptions::sky_file() const { return sky[0] == "uniform" ? "" : sky.back(); }
 
-void add_render_options(CLI::App& app, RenderOptions& options) {
-  app.add_option("BAKE", options.bake, "the bake; pictures of what it does not hold are left out and named");
-  app.add_option("-o,--output", options.folder, "folder for the pictures and render.json; made if new")
-      ->required()
-      ->option_text("DIR");
-  app.add_option("--pictures", options.pictures, "subjects to draw, separated by commas")
-      ->delimiter(',')
-      ->check(
-          CLI::IsMember({"light", "differences", "bounces", "saturation", "planes", "estimators", "views"}))
-      ->capture_default_str();
-
-  app.add_option("--albedo", options.albedo,
-                 "reflectance 0..1: R,G,B, or one number, or an image of the bake's size, whose bounces are "
-                 "then run again over the links")
-      ->capture_default_str()
-      ->option_text("R,G,B | FILE")
-      ->group("Wall");
-  app.add_option("--albedo-encoding", options.albedo_encoding,
-                 "of the image: linear, or srgb; auto: srgb where it stores integers")
-      ->check(CLI::IsMember({"auto", "linear", "srgb"}))
-      ->capture_default_str()
-      ->group("Wall");
-  app.add_option("--links", options.links,
-                 "links file of the bake; without it the map is traced again where light has to go round "
-                 "again (albedo map, sun, any sky but uniform)")
-      ->option_text("LINKS.h5")
-      ->group("Wall");
-  app.add_option("--model", options.model, "the model that shades: of the bake's own curves, or of --fit")
-      ->check(CLI::IsMember({"bounded", "published"}))
-      ->capture_default_str()
-      ->group("Wall");
-  app.add_option("--fit", options.fit, "constants of the model")->option_text("FIT.json")->group("Wall");
-
-  app.add_option("--sky", options.sky,
-                 "uniform: radiance 1; sh FILE: nine RGB coefficients of radiance, L00 L1-1 L10 L11 L2-2 "
-                 "L2-1 L20 L21 L22 (Ramamoorthi and Hanrahan 2001) with x right, y down the rows, z up; or "
-                 "a latitude-longitude image, top row up, azimuth 0 (the top of the map) at its left edge, "
-                 "clockwise")
-      ->expected(1, 2)
-      ->capture_default_str()
-      ->option_text("uniform | sh FILE | FILE")
-      ->group("Light");
-  app.add_option("--sky-truth", options.sky_truth,
-                 "what lights the ground truth under an image: the image itself, direction by direction, or "
-                 "its projection to sh, which lights the other pictures")
-      ->check(CLI::IsMember({"traced", "sh"}))
-      ->capture_default_str()
-      ->group("Light");
-  app.add_option("--sky-rays", options.sky_rays,
-                 "rays per texel, and about as many per facet, to a sky that is not uniform")
-      ->check(whole_number_in(1, 1 << 20))
-      ->capture_default_str()
-      ->group("Light");
-  app.add_option("--sun", options.sun,
-                 "azimuth, degrees clockwise from the top of the map; elevation, degrees over 0 to 90; "
-                 "irradiance of a surface facing it (a uniform sky gives pi)")
-      ->option_text("AZIMUTH,ELEVATION,INTENSITY")
-      ->group("Light");
-
-  app.add_option("--exposure", options.picture.exposure_ev,
-                 "stops, of AO only, model, truth and views; default: chosen so that a thousandth of the "
-                 "pixels is above white")
-      ->check(number_in(-kLargestExposure, kLargestExposure))
-      ->group("Pictures");
-  app.add_option("--strip", options.picture.strip_bounces, "panels in the strip of bounces")
-      ->check(whole_number_in(1, 64))
-      ->capture_default_str()
-      ->group("Pictures");
-  app.add_option("--camera", options.camera,
-                 "where the camera of the views stands: azimuth as of --sun, elevation 5 to 90 degrees")
-      ->option_text("AZIMUTH,ELEVATION")
-      ->capture_default_str()
-      ->group("Pictures");
-  app.add_option("--view-width", options.view_width, "of the views, pixels")
-      ->check(whole_number_in(16, 8192))
-      ->capture_default_str()
-      ->group("Pictures");
-  add_common_options(app, options.common);
+std::vector<Field> render_fields(RenderOptions& options) {
+  const auto grouped = [](const char* group, std::vector<Field> fields) {
+    for (Field& field : fields) field.group = group;
+    return fields;
+  };
+  Value sky = texts(options.sky);
+  sky.most = 2;
+  std::vector<Field> fields = {
+      option("BAKE", file(options.bake),
+             "the bake; pictures of what it does not hold are left out and named"),
+      shown_as(
+          required(output_option(options.folder, "folder for the pictures and render.json; made if new")),
+          "DIR"),
+      option("pictures",
+             choices(options.pictures,
+                     {"light", "differences", "bounces", "saturation", "planes", "estimators", "views"}),
+             "subjects to draw, separated by commas")};
+  append(
+      fields,
+      grouped("Wall",
+              {shown_as(option("albedo", text(options.albedo),
+                               "reflectance 0..1: R,G,B, or one number, or an image of the bake's size, "
+                               "whose bounces are then run again over the links"),
+                        "R,G,B | FILE"),
+               option("albedo-encoding", choice(options.albedo_encoding, {"auto", "linear", "srgb"}),
+                      "of the image: linear, or srgb; auto: srgb where it stores integers"),
+               shown_as(option("links", file(options.links),
+                               "links file of the bake; without it the map is traced again where light has "
+                               "to go round again (albedo map, sun, any sky but uniform)"),
+                        "LINKS.h5"),
+               option("model", choice(options.model, {"bounded", "published"}),
+                      "the model that shades: of the bake's own curves, or of --fit"),
+               shown_as(option("fit", file(options.fit), "constants of the model"), "FIT.json")}));
+  append(
+      fields,
+      grouped("Light",
+              {shown_as(option("sky", sky,
+                               "uniform: radiance 1; sh FILE: nine RGB coefficients of radiance, L00 L1-1 "
+                               "L10 L11 L2-2 L2-1 L20 L21 L22 (Ramamoorthi and Hanrahan 2001) with x right, "
+                               "y down the rows, z up; or a latitude-longitude image, top row up, azimuth 0 "
+                               "(the top of the map) at its left edge, clockwise"),
+                        "uniform | sh FILE | FILE"),
+               option("sky-truth", choice(options.sky_truth, {"traced", "sh"}),
+                      "what lights the ground truth under an image: the image itself, direction by "
+                      "direction, or its projection to sh, which lights the other pictures"),
+               option("sky-rays", whole(options.sky_rays, 1, 1 << 20),
+                      "rays per texel, and about as many per facet, to a sky that is not uniform"),
+               shown_as(option("sun", text(options.sun),
+                               "azimuth, degrees clockwise from the top of the map; elevation, degrees over "
+                               "0 to 90; irradiance of a surface facing it (a uniform sky gives pi)"),
+                        "AZIMUTH,ELEVATION,INTENSITY")}));
+  append(
+      fields,
+      grouped("Pictures",
+              {option("exposure", number(options.picture.exposure_ev, -kLargestExposure, kLargestExposure),
+                      "stops, of AO only, model, truth and views; default: chosen so that a thousandth of "
+                      "the pixels is above white"),
+               option("strip", whole(options.picture.strip_bounces, 1, 64), "panels in the strip of bounces"),
+               shown_as(option("camera", text(options.camera),
+                               "where the camera of the views stands: azimuth as of --sun, elevation 5 to 90 "
+                               "degrees"),
+                        "AZIMUTH,ELEVATION"),
+               option("view-width", whole(options.view_width, 16, 8192), "of the views, pixels")}));
+  return fields;
 }
 
-void settle_render_options(RenderOptions& options) {
+void resolve(RenderOptions& options) {
   // `--sky uniform BAKE.exr`: the second word is no file of the sky's.
   if (options.bake.empty() && options.sky.size() == 2 && options.sky[0] != "sh") {
     options.bake = options.sky.back();

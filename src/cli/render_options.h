@@ -6,18 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "cli/common_options.h"
+#include "cli/options/command.h"
 #include "lighting/sky.h"
 #include "pictures/pictures.h"
-
-namespace CLI {
-class App;
-}
 
 namespace hemibake {
 
 struct RenderOptions {
-  CommonOptions common;
   std::filesystem::path bake, folder, links, fit;
   std::string albedo = "0.9,0.6,0.2";
   std::string albedo_encoding = "auto";
@@ -38,10 +33,11 @@ struct RenderOptions {
   bool sky_is_harmonics() const { return sky[0] == "sh"; }
 };
 
-void add_render_options(CLI::App& app, RenderOptions& options);
+// They refer to `options`, which must outlive them.
+std::vector<Field> render_fields(RenderOptions& options);
 
 // What no option can know by itself. Throws InputError.
-void settle_render_options(RenderOptions& options);
+void resolve(RenderOptions& options);
 
 // "R,G,B" or one number for all three, 0..1; nullopt where the text is no list of numbers, which is then a
 // file's name. Throws InputError for numbers out of range.

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include "cli/bake_surface.h"
-#include "cli/name_file.h"
-#include "cli/retrace.h"
+#include "bake/record.h"
+#include "bake/retrace.h"
+#include "core/context.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 #include "curves/curves.h"
 #include "fitting/fitted_model.h"
 #include "fitting/models.h"
+#include "io/file_context.h"
 #include "io/fit_file.h"
 #include "io/image_io.h"
 #include "io/table_io.h"
@@ -19,6 +19,12 @@ namespace hemibake {
 namespace {
 
 constexpr int kBins = 100;
+
+// The settings that a bake was made with.
+struct Recorded {
+  MapSettings map;
+  BakeSettings bake;
+};
 
 Albedo read_albedo(const RenderOptions& options, const Bake& bake) {
   if (const auto constant = albedo_from_text(options.albedo)) return {*constant, {}};
@@ -69,7 +75,7 @@ std::optional<ShadingModel> find_model(const RenderOptions& options, const Bake&
     try {
       fits.fits = fit_model(options.model, make_curves(bake, kBins), Abscissa::kCenter, Weights::kNone);
     } catch (const std::runtime_error& error) {
-      throw_if_interrupted();
+      throw_if_cancelled();
       reason = error.what();
       return std::nullopt;
     }
@@ -80,10 +86,10 @@ std::optional<ShadingModel> find_model(const RenderOptions& options, const Bake&
 }
 
 // Returns the bake's form factors: of its links file, or traced again.
-LightTransport transport_of(const RenderOptions& options, const BakeFile& file, const BakeOptions& tracing,
-                            const Surface& surface) {
-  LightTransport transport =
-      options.links.empty() ? retrace(tracing) : visibility_from_links(options.links, file);
+LightTransport transport_of(const RenderOptions& options, const BakeFile& file, const Recorded& recorded,
+                            const Surface& surface, const Context& context) {
+  LightTransport transport = options.links.empty() ? retrace(recorded.map, recorded.bake, context)
+                                                   : transport_from_links(options.links, file);
   const PatchSet patches = patches_of_transport(surface, transport);
   if (transport.final_gather.columns != patches.count)
     throw InputError(fmt::format("{}: has {} patches, expected {} as this version makes of the map",
@@ -92,13 +98,11 @@ LightTransport transport_of(const RenderOptions& options, const BakeFile& file, 
 }
 
 // Lights the scene by sky and sun over the form factors of the bake.
-void relight(const RenderOptions& options, const BakeFile& file, const BakeOptions& tracing,
-             const SceneLight& light, RenderedScene& result) {
+void relight(const LightTransport& transport, const SceneLight& light, size_t stored_bounces,
+             RenderedScene& result) {
   ShadedScene& scene = result.scene;
-  const size_t stored = file.bake.irradiance.size();
-  LitScene lit =
-      light_scene(*scene.surface, transport_of(options, file, tracing, *scene.surface), scene.albedo, light,
-                  stored > 1 ? static_cast<int>(stored) - 1 : BakeOptions().bounces);
+  const int bounces = stored_bounces > 1 ? static_cast<int>(stored_bounces) - 1 : BakeSettings().bounces;
+  LitScene lit = light_scene(*scene.surface, transport, scene.albedo, light, bounces);
   scene.sun = std::move(lit.sun);
   scene.truth = std::move(lit.relit);
   result.projection_error = lit.projection_error;
@@ -106,7 +110,7 @@ void relight(const RenderOptions& options, const BakeFile& file, const BakeOptio
 
 }  // namespace
 
-RenderedScene shade_scene(const RenderOptions& options, BakeFile file) {
+RenderedScene shade_scene(const RenderOptions& options, BakeFile file, const Context& context) {
   RenderedScene result;
   ShadedScene& scene = result.scene;
   const Bake& bake = file.bake;
@@ -114,10 +118,11 @@ RenderedScene shade_scene(const RenderOptions& options, BakeFile file) {
   const SceneLight light{read_sky(options), sun_from_text(options.sun), options.sky_rays};
   const bool runs_again = needs_transport(light, scene.albedo);
 
-  BakeOptions tracing;
+  Recorded recorded;
   try {
-    tracing = tracing_options_from(file, options.bake);
-    scene.surface = load_bake_map(tracing).surface;
+    recorded = {recorded_map_settings(file.provenance, options.bake),
+                recorded_bake_settings(file.provenance, options.bake)};
+    scene.surface = load_map(recorded.map).surface;
     if (scene.surface->width() != bake.width || scene.surface->height() != bake.height)
       throw InputError(options.bake.string() + ": its map has another size, expected the bake's");
   } catch (const InputError& error) {
@@ -131,7 +136,8 @@ RenderedScene shade_scene(const RenderOptions& options, BakeFile file) {
                    bake.width, bake.height);
   scene.model = find_model(options, bake, result.no_model);
   if (runs_again) {
-    relight(options, file, tracing, light, result);
+    relight(transport_of(options, file, recorded, *scene.surface, context), light, bake.irradiance.size(),
+            result);
   } else if (!bake.irradiance.empty()) {
     scene.truth = relight_constant(bake.irradiance, scene.albedo.constant);
   }

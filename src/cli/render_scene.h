@@ -19,6 +19,6 @@ struct RenderedScene {
 // Reads the files that the options name and lights the scene. Looks for the map of the bake; throws
 // InputError if the light asked for needs the map and it is not there, and for everything that cannot be
 // used.
-RenderedScene shade_scene(const RenderOptions& options, BakeFile file);
+RenderedScene shade_scene(const RenderOptions& options, BakeFile file, const Context& context);
 
 }  // namespace hemibake

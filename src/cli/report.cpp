@@ -1,14 +1,11 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/commands.h"
-#include "cli/common_options.h"
-#include "cli/name_file.h"
-#include "cli/validators.h"
+#include "cli/options/command.h"
 #include "core/error.h"
+#include "io/file_context.h"
 #include "io/output_file.h"
 #include "report/html_data.h"
 #include "report/html_folder.h"
@@ -22,15 +19,13 @@ namespace {
 constexpr int kLargestSide = 16384;
 
 struct ReportOptions {
-  CommonOptions common;
   std::filesystem::path folder;
   std::filesystem::path output;
   std::vector<double> albedo = {0.9, 0.6, 0.2};
   int image_size = 512;
 };
 
-int run_report(ReportOptions options) {
-  apply_common_options(options.common);
+int run_report(ReportOptions options, const Invocation& invocation) {
   if (page_template().empty())
     throw InputError("report: this build has no report, expected one made with Node and npm");
   if (options.output.empty()) options.output = options.folder / "report.html";
@@ -50,45 +45,39 @@ int run_report(ReportOptions options) {
   file.write(page);
   file.commit();
 
-  print_result(options.common,
-               {{"output", options.output.string()},
-                {"bytes", page.size()},
-                {"image", {planes.width, planes.height}},
-                {"stride", planes.stride},
-                {"ao_error", planes.ao_error},
-                {"irradiance_error_over_pi", planes.irradiance_error_over_pi},
-                {"total_error_over_pi", planes.total_error_over_pi},
-                {"albedo", albedo},
-                {"probes", json_from_probes(report_probes(bake, models, planes.stride, albedo), models)},
-                {"bins", folder.curves ? json_from_totals(*folder.curves, data.totals)
-                                       : nlohmann::ordered_json::array()}},
-               fmt::format("{}: {:.1f} MiB\n", options.output.string(),
-                           static_cast<double>(page.size()) / (1024.0 * 1024)));
+  invocation.print({{"output", options.output.string()},
+                    {"bytes", page.size()},
+                    {"image", {planes.width, planes.height}},
+                    {"stride", planes.stride},
+                    {"ao_error", planes.ao_error},
+                    {"irradiance_error_over_pi", planes.irradiance_error_over_pi},
+                    {"total_error_over_pi", planes.total_error_over_pi},
+                    {"albedo", albedo},
+                    {"probes", json_from_probes(report_probes(bake, models, planes.stride, albedo), models)},
+                    {"bins", folder.curves ? json_from_totals(*folder.curves, data.totals)
+                                           : nlohmann::ordered_json::array()}},
+                   fmt::format("{}: {:.1f} MiB\n", options.output.string(),
+                               static_cast<double>(page.size()) / (1024.0 * 1024)));
   return 0;
 }
 
 }  // namespace
 
-CommandBody setup_report(CLI::App& app) {
+CommandSetup setup_report() {
   auto options = std::make_shared<ReportOptions>();
-  app.add_option(
-         "DIR", options->folder,
-         "folder of 'hemibake run': bake.exr, curves.csv, fit.json, check.json, as far as they are "
-         "there; also run.json (what 'run --json' printed), trade.json, the curves of "
-         "scripts/sweep, and the pictures of 'hemibake render' (render.json there or in DIR/pictures)")
-      ->required();
-  app.add_option("-o,--output", options->output, "the page to write, HTML; default: DIR/report.html");
-  app.add_option("--albedo", options->albedo, "the albedo the image opens with: R,G,B, linear")
-      ->delimiter(',')
-      ->expected(3)
-      ->check(number_in(0, 1))
-      ->capture_default_str();
-  app.add_option("--image-size", options->image_size,
-                 "longer side of the image, texels; of a larger bake every second, third, … texel is taken")
-      ->check(whole_number_in(1, kLargestSide))
-      ->capture_default_str();
-  add_common_options(app, options->common);
-  return [options] { return run_report(*options); };
+  CommandSetup setup;
+  setup.fields = {
+      required(option(
+          "DIR", file(options->folder),
+          "folder of 'hemibake run': bake.exr, curves.csv, fit.json, check.json, as far as they are there; "
+          "also run.json (what 'run --json' printed), trade.json, the curves of scripts/sweep, and the "
+          "pictures of 'hemibake render' (render.json there or in DIR/pictures)")),
+      output_option(options->output, "the page to write, HTML; default: DIR/report.html"),
+      option("albedo", numbers(options->albedo, 3, 0, 1), "the albedo the image opens with: R,G,B, linear"),
+      option("image-size", whole(options->image_size, 1, kLargestSide),
+             "longer side of the image, texels; of a larger bake every second, third, … texel is taken")};
+  setup.run = [options](const Invocation& invocation) { return run_report(*options, invocation); };
+  return setup;
 }
 
 }  // namespace hemibake

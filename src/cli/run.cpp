@@ -1,23 +1,26 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/bake_job.h"
-#include "cli/check_report.h"
-#include "cli/commands.h"
-#include "cli/common_options.h"
+#include "bake/bake.h"
+#include "bake/record.h"
+#include "bake/write.h"
 #include "cli/file_checks.h"
+#include "cli/options/bake_options.h"
+#include "cli/print/bake.h"
+#include "cli/print/checks.h"
+#include "cli/print/warnings.h"
 #include "cli/result_folder.h"
+#include "core/context.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 #include "curves/curves.h"
 #include "fitting/models.h"
 #include "io/bake_file.h"
 #include "io/curves_file.h"
+#include "io/file_context.h"
 #include "io/fit_file.h"
 #include "io/output_file.h"
 
@@ -26,9 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct RunOptions {
-  CommonOptions common;
-  BakeOptions bake;
+struct RunOptions : BakeOptions {
   fs::path folder;
   int bins = 100;
 };
@@ -65,68 +66,70 @@ std::optional<FitFile> write_fits_of(const Curves& curves, const RunOptions& opt
   try {
     fits = fit_all(curves, provenance);
   } catch (const std::runtime_error& error) {
-    throw_if_interrupted();
-    fmt::print(stderr, "hemibake: {}: no fit: {}\n", options.bake.map.string(), error.what());
+    throw_if_cancelled();
+    fmt::print(stderr, "hemibake: {}: no fit: {}\n", options.map.map.string(), error.what());
     fs::remove(path);
     return std::nullopt;
   }
   write_fits(path, fits);
-  for (const std::string& warning : fit_warnings(fits.fits))
-    fmt::print(stderr, "hemibake: {}: warning: {}\n", options.bake.map.string(), warning);
+  print_warnings(options.map.map.string(), fit_warnings(fits.fits));
   return fits;
 }
 
-int run_all(const CLI::App& app, RunOptions& options) {
-  apply_common_options(options.common);
-  settle_bake_options(app, options.bake);
-  if (!options.bake.wants("ao") || !options.bake.wants("irradiance"))
+void check_outputs(const RunOptions& options) {
+  if (!options.bake.wants(BakeOutput::kAo) || !options.bake.wants(BakeOutput::kIrradiance))
     throw InputError("--outputs: curves need ao and irradiance, expected both among them");
-  const ResultFolder folder(options.folder);
   for (const char* name : {"bake.exr", "curves.csv", "fit.json", "check.json"})
-    check_bake_output(options.bake, options.folder / name);
-  if (!options.bake.links.empty()) check_bake_output(options.bake, options.bake.links, {".h5", ".hdf5"});
+    check_bake_output(options.map, options.folder / name);
+  if (!options.links.empty()) check_bake_output(options.map, options.links, {".h5", ".hdf5"});
+}
 
-  BakeJob job;
-  job.spill_folder = options.folder;
-  prepare_bake(options.bake, false, job);
-  const BakeResult result = perform_bake(job);
-  const BakeFile bake{result.bake, result.provenance};
-  write_bake(options.folder / "bake.exr", bake.bake, bake.provenance);
+int run_all(RunOptions& options, const Invocation& invocation) {
+  resolve(options, invocation);
+  const ResultFolder folder(options.folder);
+  check_outputs(options);
 
-  const Curves curves = make_curves(bake.bake, options.bins);
+  options.bake.spill_folder = options.folder;
+  const LoadedMap map = load_map(options.map, options.bake.normal_length);
+  const BakeResult result =
+      with_file_context(options.map.map, [&] { return bake(map, options.bake, invocation.context); });
+  const Provenance provenance = record_of(options.map, map, result, invocation.context.command);
+  write_results(result, provenance, options.folder / "bake.exr", options.links);
+
+  const Curves curves = make_curves(result.planes, options.bins);
   write_curves(options.folder / "curves.csv", curves);
 
-  Checks checks = checks_of_bake(bake, std::nullopt);
+  const Checks checks = checks_of_bake({result.planes, provenance}, std::nullopt);
   write_json(options.folder / "check.json", json_from_checks(checks));
-  for (const std::string& warning : result.warnings)
-    fmt::print(stderr, "hemibake: {}: warning: {}\n", options.bake.map.string(), warning);
+  print_warnings(options.map.map.string(), warnings_of(result));
 
-  const std::optional<FitFile> fits = write_fits_of(curves, options, bake.provenance);
-  nlohmann::ordered_json json = json_from_bake(job, result);
+  const std::optional<FitFile> fits = write_fits_of(curves, options, provenance);
+  nlohmann::ordered_json json = json_from_bake(result, provenance);
   json["fits"] = nullptr;
   if (fits) {
     json["fits"] = json_from_fits(*fits);
     json["fits"].erase("provenance");
   }
   json["check"] = json_from_checks(checks);
-  print_result(options.common, json,
-               describe_bake(job, result) + (fits ? describe_fits(*fits) : "") + table_from_checks(checks));
+  invocation.print(
+      json, describe_bake(options, result) + (fits ? describe_fits(*fits) : "") + table_from_checks(checks));
   return fits && all_passed(checks) ? 0 : 1;
 }
 
 }  // namespace
 
-CommandBody setup_run(CLI::App& app) {
+CommandSetup setup_run() {
   auto options = std::make_shared<RunOptions>();
-  add_bake_options(app, options->bake);
-  app.add_option("-o,--output", options->folder,
-                 "folder for bake.exr, curves.csv, fit.json and check.json; made if new")
-      ->required()
-      ->option_text("DIR")
-      ->group("Output");
-  add_bins_option(app, options->bins)->group("Output");
-  add_common_options(app, options->common);
-  return [&app, options] { return run_all(app, *options); };
+  CommandSetup setup;
+  setup.fields = bake_options(*options);
+  append(setup.fields, {in_group(shown_as(required(output_option(options->folder,
+                                                                 "folder for bake.exr, curves.csv, fit.json "
+                                                                 "and check.json; made if new")),
+                                          "DIR"),
+                                 "Output"),
+                        in_group(bins_option(options->bins), "Output")});
+  setup.run = [options](const Invocation& invocation) { return run_all(*options, invocation); };
+  return setup;
 }
 
 }  // namespace hemibake

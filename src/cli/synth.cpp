@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <limits>
@@ -10,9 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/commands.h"
-#include "cli/common_options.h"
-#include "cli/validators.h"
+#include "cli/options/command.h"
 #include "core/constants.h"
 #include "core/error.h"
 #include "io/image_io.h"
@@ -24,7 +21,6 @@ namespace hemibake {
 namespace {
 
 struct SynthOptions {
-  CommonOptions common;
   std::string kind;
   std::filesystem::path output;
   int width = 512, height = 512;
@@ -52,8 +48,7 @@ std::string kinds_help() {
   return text + "Every map continues without a seam where it repeats.";
 }
 
-int run(const SynthOptions& options) {
-  apply_common_options(options.common);
+int run(const SynthOptions& options, const Invocation& invocation) {
   check_output_path(options.output, {".exr", ".png"});
   const SyntheticKindInfo& kind = find_kind(options.kind);
   SyntheticOptions map_options{
@@ -61,47 +56,42 @@ int run(const SynthOptions& options) {
   if (options.angle_deg) map_options.angle_rad = *options.angle_deg * kPi / 180;
 
   const SyntheticMap map = synthesize(kind.kind, map_options);
-  Provenance provenance = make_provenance(command_line(process_arguments()));
+  Provenance provenance = make_provenance(invocation.context.command);
   provenance["recommended_amplitude_m"] = map.recommended_amplitude_m;
   write_height_map(options.output, map.heights, provenance);
 
-  print_result(options.common,
-               {{"output", options.output.string()},
-                {"kind", kind.name},
-                {"width", options.width},
-                {"height", options.height},
-                {"seed", options.seed},
-                {"recommended_amplitude_m", map.recommended_amplitude_m}},
-               fmt::format("{}: {} {}x{}, for a size of 1 m use --amplitude {}\n", options.output.string(),
-                           kind.name, options.width, options.height, map.recommended_amplitude_m));
+  invocation.print(
+      {{"output", options.output.string()},
+       {"kind", kind.name},
+       {"width", options.width},
+       {"height", options.height},
+       {"seed", options.seed},
+       {"recommended_amplitude_m", map.recommended_amplitude_m}},
+      fmt::format("{}: {} {}x{}, for a size of 1 m use --amplitude {}\n", options.output.string(), kind.name,
+                  options.width, options.height, map.recommended_amplitude_m));
   return 0;
 }
 
 }  // namespace
 
-CommandBody setup_synth(CLI::App& app) {
+CommandSetup setup_synth() {
   auto options = std::make_shared<SynthOptions>();
-  constexpr uint64_t kMaxSide = kMaxTexels;
-  app.add_option("KIND", options->kind, "what to make, see below")
-      ->required()
-      ->check(CLI::IsMember(kind_names()));
-  app.add_option("-o,--output", options->output, "height map to write: .exr (float) or .png (16 bit)")
-      ->required()
-      ->option_text("MAP");
-  app.add_option("--width", options->width, fmt::format("texels; width x height at most {}", kMaxTexels))
-      ->check(whole_number_in(1, kMaxSide))
-      ->capture_default_str();
-  app.add_option("--height", options->height, "texels, down the image")
-      ->check(whole_number_in(1, kMaxSide))
-      ->capture_default_str();
-  app.add_option("--seed", options->seed, "another number, another map (bricks, shapes, concrete, noise)")
-      ->check(whole_number_in(0, std::numeric_limits<uint64_t>::max()))
-      ->capture_default_str();
-  app.add_option("--angle", options->angle_deg, "degrees, of bowl and groove; default in brackets below")
-      ->check(number_in(kMinSyntheticAngleDeg, kMaxSyntheticAngleDeg));
-  add_common_options(app, options->common);
-  app.footer(kinds_help());
-  return [options] { return run(*options); };
+  constexpr int kMaxSide = kMaxTexels;
+  CommandSetup setup;
+  setup.fields = {
+      required(option("KIND", choice(options->kind, kind_names()), "what to make, see below")),
+      shown_as(required(output_option(options->output, "height map to write: .exr (float) or .png (16 bit)")),
+               "MAP"),
+      option("width", whole(options->width, 1, kMaxSide),
+             fmt::format("texels; width x height at most {}", kMaxTexels)),
+      option("height", whole(options->height, 1, kMaxSide), "texels, down the image"),
+      option("seed", whole(options->seed, 0),
+             "another number, another map (bricks, shapes, concrete, noise)"),
+      option("angle", number(options->angle_deg, kMinSyntheticAngleDeg, kMaxSyntheticAngleDeg),
+             "degrees, of bowl and groove; default in brackets below")};
+  setup.footer = kinds_help();
+  setup.run = [options](const Invocation& invocation) { return run(*options, invocation); };
+  return setup;
 }
 
 }  // namespace hemibake

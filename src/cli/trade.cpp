@@ -1,18 +1,14 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/bake_options.h"
-#include "cli/bake_surface.h"
-#include "cli/commands.h"
-#include "cli/common_options.h"
+#include "bake/record.h"
+#include "cli/options/bake_options.h"
 #include "cli/result_folder.h"
-#include "cli/validators.h"
 #include "io/table_io.h"
 #include "trade/study.h"
 #include "trade/trade_file.h"
@@ -22,8 +18,7 @@ namespace hemibake {
 namespace {
 
 struct TradeOptions {
-  CommonOptions common;
-  BakeOptions bake;
+  MapSettings map;
   std::filesystem::path folder;
   std::string effort = "normal";
   double memory_gib = 4;
@@ -35,21 +30,20 @@ Effort effort_of(const std::string& name) {
   return Effort::kFull;
 }
 
-int run_trade(const CLI::App& app, TradeOptions& options) {
-  settle_bake_options(app, options.bake);
+int run_trade(TradeOptions& options, const Invocation& invocation) {
+  BakeSettings unused;
+  resolve_defaults(options.map, unused, invocation.given);
+  validate(options.map, unused, invocation.given);
   const ResultFolder folder(options.folder);
   for (const char* name : {"trade.json", "trade.csv", "reference.exr", "reference.json"})
-    check_bake_output(options.bake, options.folder / name);
+    check_bake_output(options.map, options.folder / name);
 
   StudyOptions study;
   study.folder = options.folder;
-  study.provenance = make_provenance(command_line(process_arguments()), options.bake.map);
-  record_map_options(options.bake, study.provenance);
+  study.provenance = make_provenance(invocation.context.command);
+  record_map(options.map, hash_files(options.map), study.provenance);
   // In the child: threads are not to be started here.
-  study.load = [&options] {
-    apply_common_options(options.common);
-    return load_bake_map(options.bake).surface;
-  };
+  study.load = [&options] { return load_map(options.map).surface; };
   study.reference.effort = effort_of(options.effort);
   study.reference.memory_bytes = static_cast<size_t>(options.memory_gib * 1024 * 1024 * 1024);
   const Study result = run_study(study);
@@ -58,35 +52,34 @@ int run_trade(const CLI::App& app, TradeOptions& options) {
   json["pictures"] = write_trade_pictures(options.folder, json);
   write_trade_csv(options.folder / "trade.csv", json);
   write_json(options.folder / "trade.json", json);
-  print_result(
-      options.common, json,
-      describe_study(json) + fmt::format("{} runs, {} of them on record from before\n",
-                                         result.runs.size() + 1, result.runs.size() + 1 - result.made_now));
+  invocation.print(json, describe_study(json) + fmt::format("{} runs, {} of them on record from before\n",
+                                                            result.runs.size() + 1,
+                                                            result.runs.size() + 1 - result.made_now));
   return 0;
 }
 
 }  // namespace
 
-CommandBody setup_trade(CLI::App& app) {
+CommandSetup setup_trade() {
   auto options = std::make_shared<TradeOptions>();
-  add_surface_options(app, options->bake);
-  app.add_option("-o,--output", options->folder,
-                 "folder for trade.json, trade.csv and pictures; made if new. What was done there before, "
-                 "with the same map and options, is not done again")
-      ->required()
-      ->option_text("DIR")
-      ->group("Output");
-  app.add_option("--effort", options->effort,
-                 "how many settings: seconds (quick), minutes (normal) or an hour (full) on 128 x 128 texels")
-      ->check(CLI::IsMember({"quick", "normal", "full"}))
-      ->capture_default_str()
-      ->group("Output");
-  app.add_option("--memory", options->memory_gib, "what the links of the reference may take, GiB")
-      ->check(positive_to(1e6))
-      ->capture_default_str()
-      ->group("Output");
-  add_common_options(app, options->common);
-  return [&app, options] { return run_trade(app, *options); };
+  CommandSetup setup;
+  setup.fields = surface_options(options->map);
+  append(setup.fields,
+         {in_group(shown_as(required(output_option(
+                                options->folder,
+                                "folder for trade.json, trade.csv and pictures; made if new. What was done "
+                                "there before, with the same map and options, is not done again")),
+                            "DIR"),
+                   "Output"),
+          in_group(option("effort", choice(options->effort, {"quick", "normal", "full"}),
+                          "how many settings: seconds (quick), minutes (normal) or an hour (full) on 128 x "
+                          "128 texels"),
+                   "Output"),
+          in_group(option("memory", positive(options->memory_gib, 1e6),
+                          "what the links of the reference may take, GiB"),
+                   "Output")});
+  setup.run = [options](const Invocation& invocation) { return run_trade(*options, invocation); };
+  return setup;
 }
 
 }  // namespace hemibake

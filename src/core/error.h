@@ -19,10 +19,10 @@ class CheckError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The user pressed Ctrl-C (or sent SIGTERM): exit 130.
-class Interrupted : public std::runtime_error {
+// The caller cancelled the work: exit 130.
+class Cancelled : public std::runtime_error {
  public:
-  Interrupted() : std::runtime_error("interrupted") {}
+  Cancelled() : std::runtime_error("cancelled") {}
 };
 
 // A bug: throws std::logic_error naming `what` and both values.

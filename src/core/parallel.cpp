@@ -5,51 +5,104 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <ctime>
-#include <memory>
+#include <optional>
 
-#include "core/interrupt.h"
+#include "core/context.h"
+#include "core/error.h"
 
 namespace hemibake {
+
+// The threads of a context. More than the hardware has are made only where oneTBB is told that there may be.
+struct ContextScope::Threads {
+  explicit Threads(int count) : arena(count) {
+    if (count > tbb::info::default_concurrency())
+      more_threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(count));
+  }
+  std::optional<tbb::global_control> more_threads;
+  tbb::task_arena arena;
+};
+
 namespace {
 
-std::unique_ptr<tbb::global_control> thread_limit;
+thread_local const Context* context_in_force = nullptr;
+
+// Makes `context` the one in force on a worker while it runs a piece.
+struct WorkerContext {
+  explicit WorkerContext(const Context* context) : outer(context_in_force) { context_in_force = context; }
+  ~WorkerContext() { context_in_force = outer; }
+  const Context* outer;
+};
+
+// Flushes denormals to zero, as Embree wants it, and restores the thread's own mode.
+struct FlushedDenormals {
+  FlushedDenormals() {
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+  }
+  ~FlushedDenormals() { _mm_setcsr(saved); }
+  unsigned saved = _mm_getcsr();
+};
 
 }  // namespace
 
-void set_thread_count(int threads) {
-  const int wanted = threads > 0 ? threads : tbb::info::default_concurrency();
-  thread_limit.reset();
-  thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                       static_cast<size_t>(std::max(1, wanted)));
+thread_local ContextScope::Threads* ContextScope::in_force_ = nullptr;
+
+ContextScope::ContextScope(const Context& context)
+    : threads_(std::make_unique<Threads>(context.threads > 0 ? context.threads
+                                                             : tbb::info::default_concurrency())),
+      outer_context_(context_in_force),
+      outer_threads_(in_force_) {
+  context_in_force = &context;
+  in_force_ = threads_.get();
+}
+
+ContextScope::~ContextScope() {
+  context_in_force = outer_context_;
+  in_force_ = outer_threads_;
+}
+
+const Context& current_context() {
+  static const Context kNone;
+  return context_in_force ? *context_in_force : kNone;
+}
+
+bool cancel_requested() {
+  const std::atomic<bool>* cancel = current_context().cancel;
+  return cancel && cancel->load(std::memory_order_relaxed);
+}
+
+void throw_if_cancelled() {
+  if (cancel_requested()) throw Cancelled();
 }
 
 int thread_count() {
-  return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  const int wanted = current_context().threads;
+  return wanted > 0 ? wanted : tbb::info::default_concurrency();
 }
 
 void parallel_for(size_t count, size_t grain, const std::function<void(size_t, size_t)>& body) {
   if (count == 0) return;
   const size_t step = std::max<size_t>(1, grain);
   const size_t pieces = (count + step - 1) / step;
-  tbb::parallel_for(
-      size_t{0}, pieces,
-      [&](size_t piece) {
-        throw_if_interrupted();
-        const unsigned saved = _mm_getcsr();
-        _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-        _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-        struct Restore {
-          unsigned csr;
-          ~Restore() { _mm_setcsr(csr); }
-        } restore{saved};
-        const size_t begin = piece * step;
-        body(begin, std::min(count, begin + step));
-      },
-      tbb::simple_partitioner{});
-  throw_if_interrupted();
+  const Context* context = context_in_force;
+  const auto run_piece = [&](size_t piece) {
+    const WorkerContext in_force(context);
+    throw_if_cancelled();
+    const FlushedDenormals flushed;
+    const size_t begin = piece * step;
+    body(begin, std::min(count, begin + step));
+  };
+  const auto run_all = [&] { tbb::parallel_for(size_t{0}, pieces, run_piece, tbb::simple_partitioner{}); };
+  if (ContextScope::in_force_) {
+    ContextScope::in_force_->arena.execute(run_all);
+  } else {
+    run_all();
+  }
+  throw_if_cancelled();
 }
 
 double process_cpu_seconds() {

@@ -23,7 +23,7 @@ struct EstimatorOptions {
 struct Estimator {
   const char* name;
   const char* description;  // one line
-  // Estimates AO. The same bytes at any thread count. Throws Interrupted.
+  // Estimates AO. The same bytes at any thread count. Throws Cancelled.
   Estimate (*estimate)(const Surface& surface, const EstimatorOptions& options);
 };
 

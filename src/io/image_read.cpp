@@ -9,8 +9,8 @@
 #include <memory>
 #include <optional>
 
+#include "core/context.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 #include "core/parallel.h"
 #include "io/image_io.h"
 #include "io/png_check.h"
@@ -144,7 +144,7 @@ class Reader {
     std::vector<Sample> block(static_cast<size_t>(rows) * static_cast<size_t>(spec_.width) *
                               static_cast<size_t>(channels));
     for (int begin = 0; begin < spec_.height; begin += rows) {
-      throw_if_interrupted();
+      throw_if_cancelled();
       const int end = std::min(spec_.height, begin + rows);
       if (!read_rows(begin, end, channel_begin, channel_end, format, block.data()) || input_->has_error())
         refuse(path_, fmt::format("cannot be read from row {} on, it may be cut short ({})", begin,

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/context.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 #include "core/parallel.h"
 #include "io/image_io.h"
 #include "io/output_file.h"
@@ -128,7 +128,7 @@ class Writer {
     const auto width = static_cast<size_t>(spec_.width);
     std::vector<Sample> block(static_cast<size_t>(rows) * width * planes.size());
     for (int begin = 0; begin < spec_.height; begin += rows) {
-      throw_if_interrupted();
+      throw_if_cancelled();
       const int end = std::min(spec_.height, begin + rows);
       const size_t first_texel = static_cast<size_t>(begin) * width;
       const size_t texels = static_cast<size_t>(end - begin) * width;

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <string>
 
+#include "core/context.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 #include "io/hdf5_handle.h"
 #include "io/output_file.h"
 #include "surface/surface.h"
@@ -111,7 +111,7 @@ void write_matrix(hid_t file, const char* name, const FormFactorMatrix& links) {
   std::vector<uint64_t> ends;
   BlockRows rows;
   for (const FormFactorBlock& block : links.blocks) {
-    throw_if_interrupted();
+    throw_if_cancelled();
     unpack_block(block, rows);
     ends.assign(rows.row_begin.begin() + 1, rows.row_begin.end());
     for (uint64_t& end : ends) end += position;
@@ -255,7 +255,7 @@ FormFactorMatrix read_matrix(hid_t file, const std::string& name) {
   uint64_t position = ends[0];
   if (position != 0) refuse(fmt::format("the first row of {} begins at link {}, not at 0", name, position));
   for (size_t b = 0; b < links.blocks.size(); ++b) {
-    throw_if_interrupted();
+    throw_if_cancelled();
     const uint64_t first_row = b * FormFactorMatrix::kRowsPerBlock;
     row_begins.extract(ends, std::min<uint64_t>(FormFactorMatrix::kRowsPerBlock, rows - first_row));
     set_row_begins(block_rows, ends, position, first_row, links, indices.size(), name);
@@ -282,7 +282,8 @@ LinksFile read_links_from(hid_t file) {
   result.provenance = read_provenance(file);
   result.final_gather = read_matrix(file, "gather");
   if (!same_object(file, "gather", "patches")) result.patch_form_factors = read_matrix(file, "patches");
-  const FormFactorMatrix& patches = result.patch_form_factors ? *result.patch_form_factors : result.final_gather;
+  const FormFactorMatrix& patches =
+      result.patch_form_factors ? *result.patch_form_factors : result.final_gather;
   Extractor direct(file, "direct", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT);
   if (patches.rows != result.final_gather.columns || patches.columns != result.final_gather.columns ||
       direct.size() != result.final_gather.columns)

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/interrupt.h"
+#include "core/context.h"
 #include "surface/surface.h"
 
 namespace hemibake {
@@ -56,7 +56,7 @@ std::string png_error(const std::filesystem::path& path) {
     const std::string_view type(head + 4, 4);
     uint32_t crc = add_to_crc(0, head + 4, 4);
     for (size_t left = big_endian(head); left > 0;) {
-      throw_if_interrupted();
+      throw_if_cancelled();
       const size_t count = std::min(left, block.size());
       if (!read_exactly(file, block.data(), count)) return "is cut short, expected a whole PNG";
       crc = add_to_crc(crc, block.data(), count);

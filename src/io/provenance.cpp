@@ -12,8 +12,8 @@
 #include <iterator>
 #include <memory>
 
+#include "core/context.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 
 namespace hemibake {
 namespace {
@@ -99,7 +99,7 @@ std::string sha256_of_file(const std::filesystem::path& path) {
   EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr);
   std::vector<unsigned char> block(kHashBlockBytes);
   while (const size_t count = std::fread(block.data(), 1, block.size(), file.get())) {
-    throw_if_interrupted();
+    throw_if_cancelled();
     EVP_DigestUpdate(context.get(), block.data(), count);
   }
   if (std::ferror(file.get()))

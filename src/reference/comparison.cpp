@@ -188,4 +188,9 @@ RefereeVerdict worst_verdict(const std::vector<RefereeRow>& rows) {
   return worst;
 }
 
+bool has_passed(const RefereeCheck& check) {
+  return worst_verdict(check.means) != RefereeVerdict::kOutside &&
+         worst_verdict(check.bins) != RefereeVerdict::kOutside;
+}
+
 }  // namespace hemibake

@@ -79,4 +79,7 @@ RefereeCheck check_against_referee(const Surface& surface, const JudgedLight& ba
 // Returns kOutside if any row is, else kUndecided if any is, else kWithin.
 RefereeVerdict worst_verdict(const std::vector<RefereeRow>& rows);
 
+// Returns whether no row is outside its tolerance.
+bool has_passed(const RefereeCheck& check);
+
 }  // namespace hemibake

@@ -16,8 +16,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "core/context.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 
 namespace hemibake {
 namespace {
@@ -34,7 +34,7 @@ std::string answer_of(const std::function<std::string()>& work) {
     return tagged(kInput, error.what());
   } catch (const CheckError& error) {
     return tagged(kCheck, error.what());
-  } catch (const Interrupted&) {
+  } catch (const Cancelled&) {
     return tagged(kInterrupted, "");
   } catch (const std::bad_alloc&) {
     return tagged(kInput, "out of memory, expected a smaller map");
@@ -66,7 +66,7 @@ std::string read_all(int pipe_end, pid_t child) {
   bool told = false;
   char buffer[4096];
   while (true) {
-    if (interrupt_requested() && !told) {
+    if (cancel_requested() && !told) {
       kill(child, SIGTERM);
       told = true;
     }
@@ -90,7 +90,7 @@ size_t status_bytes(const std::string& name) {
 }  // namespace
 
 std::string run_in_child(const std::string& what, const std::function<std::string()>& work) {
-  throw_if_interrupted();
+  throw_if_cancelled();
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error(fmt::format("{}: no pipe: {}", what, std::strerror(errno)));
   std::fflush(nullptr);
@@ -112,7 +112,7 @@ std::string run_in_child(const std::string& what, const std::function<std::strin
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  throw_if_interrupted();
+  throw_if_cancelled();
   if (answer.empty() || !WIFEXITED(status))
     throw std::runtime_error(
         WIFSIGNALED(status)
@@ -128,7 +128,7 @@ std::string run_in_child(const std::string& what, const std::function<std::strin
     case kCheck:
       throw CheckError(text);
     case kInterrupted:
-      throw Interrupted();
+      throw Cancelled();
     default:
       throw std::runtime_error(what + ": " + text);
   }

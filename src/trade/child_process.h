@@ -8,7 +8,7 @@
 
 namespace hemibake {
 
-// work() in a forked copy of this process; what it returned. InputError, CheckError and Interrupted thrown
+// work() in a forked copy of this process; what it returned. InputError, CheckError and Cancelled thrown
 // there are thrown here again, anything else as std::runtime_error naming `what`. An interrupt here ends the
 // child. This process must not have called parallel_for: a fork has none of its threads. (Threads that
 // libraries start when they are loaded, such as OpenImageIO's logger, sleep and are not missed.)

@@ -3,8 +3,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "core/context.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 #include "fitting/models.h"
 
 namespace hemibake {
@@ -41,7 +41,7 @@ std::vector<NamedFit> fits_or_none(const char* model, const Curves& curves) {
   try {
     return fit_model(model, curves, Abscissa::kCenter, Weights::kNone);
   } catch (const std::runtime_error&) {
-    throw_if_interrupted();
+    throw_if_cancelled();
     return {};
   }
 }
@@ -95,9 +95,9 @@ std::vector<LightModelErrors> light_model_errors(const RunPlanes& planes, const 
     const Grid<float>& ao = wanted.empty() ? (wants_cosine ? planes.uniform : planes.cosine) : wanted;
     LightModelErrors result{model.name, {}};
     std::vector<float> light(ao.size());
-    for (size_t a = 0; a < kTradeAlbedos.size(); ++a) {
+    for (size_t a = 0; a < kJudgedAlbedos.size(); ++a) {
       for (size_t i = 0; i < light.size(); ++i)
-        light[i] = static_cast<float>(evaluate(static_cast<double>(ao[i]), kTradeAlbedos[a]));
+        light[i] = static_cast<float>(evaluate(static_cast<double>(ao[i]), kJudgedAlbedos[a]));
       result.error[a] = error_of(light, truth.all_bounces[a].values, planes.known.values);
     }
     results.push_back(std::move(result));

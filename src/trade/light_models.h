@@ -38,7 +38,7 @@ std::span<const LightModel> light_models();
 
 struct LightModelErrors {
   std::string model;
-  std::array<ErrorStatistics, kTradeAlbedos.size()> error;  // of E/π at each of kTradeAlbedos
+  std::array<ErrorStatistics, kJudgedAlbedos.size()> error;  // of E/π at each of kJudgedAlbedos
 };
 
 // Every model that has its constants, on the AO of `planes` against the true E/π. The cubic takes E₀/π where

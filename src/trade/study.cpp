@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/constants.h"
+#include "core/context.h"
 #include "core/error.h"
-#include "core/interrupt.h"
 #include "core/progress.h"
 #include "io/table_io.h"
 #include "trade/child_process.h"
@@ -100,7 +100,7 @@ Study run_study(const StudyOptions& options) {
       make_ladder(options.reference.effort, study.reference.at("can_halve").get<bool>());
   Progress progress("trade", ladder.size(), "run");
   for (const TradeRun& run : ladder) {
-    throw_if_interrupted();
+    throw_if_cancelled();
     // The reference is the same bytes whenever it is made from this key.
     key["method"] = run.method;
     key["settings"] = run.settings;

@@ -29,7 +29,7 @@ struct Study {
   size_t made_now = 0;                       // runs and reference; the others were on record
 };
 
-// Throws Interrupted; what is done by then is on record.
+// Throws Cancelled; what is done by then is on record.
 Study run_study(const StudyOptions& options);
 
 }  // namespace hemibake

@@ -23,7 +23,7 @@ ordered_json plane_descriptions() {
                          {"first", "E1/pi, one bounce at albedo 1"}};
   for (const NamedPlane& named : named_planes())
     if (named.single == nullptr)
-      planes[named.name] = fmt::format("E/pi, all bounces at albedo {:g}", kTradeAlbedos[named.albedo]);
+      planes[named.name] = fmt::format("E/pi, all bounces at albedo {:g}", kJudgedAlbedos[named.albedo]);
   return planes;
 }
 
@@ -131,7 +131,7 @@ const char* effort_name(Effort effort) {
 
 ordered_json json_from_study(const Study& study, Effort effort, const Provenance& provenance) {
   ordered_json json = {
-      {"provenance", provenance}, {"effort", effort_name(effort)}, {"albedos", kTradeAlbedos}};
+      {"provenance", provenance}, {"effort", effort_name(effort)}, {"albedos", kJudgedAlbedos}};
   json["planes"] = plane_descriptions();
   json["reference"] = study.reference;
   json["reference"]["precision"] = precision_of(study.reference, study.runs);

@@ -24,8 +24,8 @@ const std::vector<NamedPlane>& named_planes() {
     std::vector<NamedPlane> all{{"ao", &RunPlanes::uniform, 0},
                                 {"direct", &RunPlanes::cosine, 0},
                                 {"first", &RunPlanes::first_bounce, 0}};
-    for (size_t a = 0; a < kTradeAlbedos.size(); ++a)
-      all.push_back({fmt::format("light.{:02.0f}", 100 * kTradeAlbedos[a]), nullptr, a});
+    for (size_t a = 0; a < kJudgedAlbedos.size(); ++a)
+      all.push_back({fmt::format("light.{:02.0f}", 100 * kJudgedAlbedos[a]), nullptr, a});
     return all;
   }();
   return planes;
@@ -36,10 +36,10 @@ void add_bounces(const std::vector<Grid<float>>& irradiance, RunPlanes& planes) 
   const size_t texels = irradiance[0].size();
   planes.first_bounce = irradiance[1];
   for (float& value : planes.first_bounce.values) value /= static_cast<float>(kPi);
-  for (size_t a = 0; a < kTradeAlbedos.size(); ++a) {
+  for (size_t a = 0; a < kJudgedAlbedos.size(); ++a) {
     planes.all_bounces[a] = Grid<float>(irradiance[0].width, irradiance[0].height);
     for (size_t i = 0; i < texels; ++i)
-      planes.all_bounces[a][i] = static_cast<float>(sum_bounces(irradiance, i, kTradeAlbedos[a]) / kPi);
+      planes.all_bounces[a][i] = static_cast<float>(sum_bounces(irradiance, i, kJudgedAlbedos[a]) / kPi);
   }
 }
 

@@ -8,20 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "bake/target_error.h"
 #include "core/grid.h"
 #include "surface/surface.h"
 
 namespace hemibake {
 
-// Albedos at which all bounces are summed and compared.
-inline constexpr std::array<double, 4> kTradeAlbedos = {0.2, 0.5, 0.8, 0.95};
-
 // What a run found, one value per texel. Planes the method does not give are empty.
 struct RunPlanes {
-  Grid<float> uniform;                                        // α
-  Grid<float> cosine;                                         // E₀/π
-  Grid<float> first_bounce;                                   // E₁/π at albedo 1
-  std::array<Grid<float>, kTradeAlbedos.size()> all_bounces;  // E/π at each of kTradeAlbedos
+  Grid<float> uniform;                                         // α
+  Grid<float> cosine;                                          // E₀/π
+  Grid<float> first_bounce;                                    // E₁/π at albedo 1
+  std::array<Grid<float>, kJudgedAlbedos.size()> all_bounces;  // E/π at each of kJudgedAlbedos
   Grid<uint8_t> known;  // 0 where the method has no answer; empty: it has one everywhere
   uint64_t work = 0;    // rays, azimuths, tree nodes, taps or height samples
 };
@@ -51,7 +49,7 @@ struct TradeRun {
   double abscissa = 0;
   bool representative = false;  // the one good setting of its method
   bool keeps_planes = false;    // written out with their error maps; those of representative runs are too
-  // direct: the true E₀ (0..π), for methods that take it as given. Throws Interrupted.
+  // direct: the true E₀ (0..π), for methods that take it as given. Throws Cancelled.
   std::function<RunPlanes(const Surface& surface, const Grid<float>& direct)> perform;
 
   // Names the run and its files: "embree_rays-64_directions-uniform".

@@ -33,7 +33,7 @@ struct LightTransport {
 };
 
 // Traces every texel, and every patch if `with_form_factors`: only then are these kept. The same bytes at any
-// thread count. Throws Interrupted between blocks of rows. spill: file that form factors go to; none: they
+// thread count. Throws Cancelled between blocks of rows. spill: file that form factors go to; none: they
 // stay in memory.
 LightTransport trace_surface(const Tracer& tracer, bool with_form_factors,
                              const std::shared_ptr<SpillFile>& spill = nullptr);

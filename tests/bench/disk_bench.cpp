@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "core/parallel.h"
+#include "support/threads.h"
 #include "estimators/disk.h"
 #include "estimators/disk_robust.h"
 #include "sampling/low_discrepancy.h"

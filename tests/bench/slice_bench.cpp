@@ -17,6 +17,7 @@
 #include "bench/equal_error.h"
 #include "core/constants.h"
 #include "core/parallel.h"
+#include "support/threads.h"
 #include "core/statistics.h"
 #include "io/image_io.h"
 #include "sampling/directions.h"

@@ -21,6 +21,7 @@
 #include "bench/equal_error.h"
 #include "core/constants.h"
 #include "core/parallel.h"
+#include "support/threads.h"
 #include "core/statistics.h"
 #include "surface/synthetic/noise.h"
 #include "tracers/embree/embree.h"

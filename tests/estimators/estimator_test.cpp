@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/parallel.h"
+#include "support/threads.h"
 #include "support/maps.h"
 
 namespace hemibake {

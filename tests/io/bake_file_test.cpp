@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/parallel.h"
+#include "support/threads.h"
 #include "io/image_io.h"
 #include "io/io_testing.h"
 

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "core/interrupt.h"
+#include "core/context.h"
 #include "io/foreign_images.h"
 
 namespace hemibake {
@@ -244,7 +244,7 @@ TEST_F(ImageIo, FullDiskIsOneLineAndLeavesNothing) {
   const auto attempt = [&](const auto& action) {
     try {
       action();
-    } catch (const Interrupted&) {
+    } catch (const Cancelled&) {
       ++interrupted;
     }
   };

@@ -14,7 +14,7 @@
 #include <random>
 #include <thread>
 
-#include "core/interrupt.h"
+#include "core/context.h"
 #include "io/io_testing.h"
 
 // For the sanitizer build: HDF5 never frees a file that it could not flush.

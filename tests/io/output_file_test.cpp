@@ -31,8 +31,8 @@ TEST(OutputFile, ErrorAndInterruptLeaveWhatWasThere) {
   try {
     OutputFile file(folder / "out.csv");
     file.write("half");
-    throw Interrupted();
-  } catch (const Interrupted&) {
+    throw Cancelled();
+  } catch (const Cancelled&) {
   }
   EXPECT_EQ(read_bytes(folder / "out.csv"), "before");
   EXPECT_EQ(folder.count(), 1u);

@@ -11,6 +11,7 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "support/threads.h"
 #include "reference/lit_path_tracer.h"
 #include "reference/random.h"
 #include "reference/texel_sample.h"

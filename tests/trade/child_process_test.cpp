@@ -28,7 +28,7 @@ TEST(ChildProcess, ThrowsWhatTheWorkThrew) {
   EXPECT_THROW(run_in_child("work", []() -> std::string { throw InputError("a.png: bad, expected good"); }),
                InputError);
   EXPECT_THROW(run_in_child("work", []() -> std::string { throw CheckError("no"); }), CheckError);
-  EXPECT_THROW(run_in_child("work", []() -> std::string { throw Interrupted(); }), Interrupted);
+  EXPECT_THROW(run_in_child("work", []() -> std::string { throw Cancelled(); }), Cancelled);
   try {
     run_in_child("the work", []() -> std::string { throw std::logic_error("a bug"); });
     FAIL();

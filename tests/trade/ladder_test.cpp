@@ -80,8 +80,8 @@ TEST(Ladder, BouncesAreSummedAtEveryAlbedo) {
   RunPlanes planes;
   add_bounces(irradiance, planes);
   EXPECT_NEAR(planes.first_bounce[1], 0.5, 1e-6);
-  for (size_t a = 0; a < kTradeAlbedos.size(); ++a) {
-    const double rho = kTradeAlbedos[a];
+  for (size_t a = 0; a < kJudgedAlbedos.size(); ++a) {
+    const double rho = kJudgedAlbedos[a];
     EXPECT_NEAR(planes.all_bounces[a][0], 1 + rho * 0.5 + rho * rho * 0.25, 1e-6);
   }
 }

@@ -22,15 +22,15 @@ RunPlanes ramp(size_t texels) {
 void expect_only_right(const std::string& model, const FittedModels& fitted,
                        const std::function<double(double uniform, double cosine, double albedo)>& light) {
   RunPlanes truth = ramp(501);
-  for (size_t a = 0; a < kTradeAlbedos.size(); ++a) {
+  for (size_t a = 0; a < kJudgedAlbedos.size(); ++a) {
     truth.all_bounces[a] = truth.uniform;
     for (size_t i = 0; i < truth.uniform.size(); ++i)
       truth.all_bounces[a][i] =
-          static_cast<float>(light(truth.uniform[i], truth.cosine[i], kTradeAlbedos[a]));
+          static_cast<float>(light(truth.uniform[i], truth.cosine[i], kJudgedAlbedos[a]));
   }
   bool found = false;
   for (const LightModelErrors& errors : light_model_errors(truth, fitted, truth)) {
-    for (size_t a = 0; a < kTradeAlbedos.size(); ++a) {
+    for (size_t a = 0; a < kJudgedAlbedos.size(); ++a) {
       // Stored in float.
       if (errors.model == model)
         EXPECT_LT(errors.error[a].largest, 1e-6) << model;

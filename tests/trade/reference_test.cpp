@@ -50,7 +50,7 @@ TEST(Reference, LightGrowsWithTheAlbedo) {
   const RunPlanes planes = make_reference(surface, quick()).planes;
   for (size_t i = 0; i < planes.cosine.size(); ++i) {
     ASSERT_GE(planes.all_bounces[0][i], planes.cosine[i] - 1e-3);
-    for (size_t a = 1; a < kTradeAlbedos.size(); ++a)
+    for (size_t a = 1; a < kJudgedAlbedos.size(); ++a)
       ASSERT_GT(planes.all_bounces[a][i], planes.all_bounces[a - 1][i]);
     ASSERT_LE(planes.all_bounces.back()[i], 1 + 1e-3);
   }

@@ -6,6 +6,7 @@
 
 #include "core/constants.h"
 #include "core/parallel.h"
+#include "support/threads.h"
 #include "core/statistics.h"
 #include "support/maps.h"
 #include "surface/facets.h"

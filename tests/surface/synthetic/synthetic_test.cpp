@@ -10,6 +10,7 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "support/threads.h"
 #include "surface/surface.h"
 #include "tracers/embree/embree.h"
 #include "transport/trace_surface.h"

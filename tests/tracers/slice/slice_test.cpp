@@ -9,6 +9,7 @@
 #include "analytic/groove_reference.h"
 #include "core/constants.h"
 #include "core/parallel.h"
+#include "support/threads.h"
 #include "core/statistics.h"
 #include "support/maps.h"
 #include "support/patch_means.h"

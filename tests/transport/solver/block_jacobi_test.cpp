@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "support/threads.h"
 #include "support/maps.h"
 #include "tracers/slice/slice.h"
 #include "transport/trace_surface.h"

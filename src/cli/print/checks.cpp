@@ -1,4 +1,4 @@
-#include "cli/check_report.h"
+#include "cli/print/checks.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "cli/referee_report.h"
+#include "cli/print/referee.h"
 
 #include <fmt/format.h>
 
@@ -54,8 +54,7 @@ std::string table_from_referee(const RefereeCheck& check) {
 }
 
 nlohmann::ordered_json json_from_referee(const RefereeCheck& check) {
-  return {{"passed", worst_verdict(check.means) != RefereeVerdict::kOutside &&
-                         worst_verdict(check.bins) != RefereeVerdict::kOutside},
+  return {{"passed", has_passed(check)},
           {"texels", check.texels},
           {"paths_per_texel", check.paths_per_texel},
           {"rays", check.rays},

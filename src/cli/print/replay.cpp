@@ -1,29 +1,10 @@
-#include "cli/replay.h"
+#include "cli/print/replay.h"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
-#include "core/error.h"
-
 namespace hemibake {
-
-Replay replay_texel(const BakeJob& job, int x, int y) {
-  const Surface& surface = job.map.surface;
-  if (x < 0 || y < 0 || x >= surface.width() || y >= surface.height())
-    throw InputError(fmt::format("{}: there is no texel {},{}, expected 0,0 to {},{}",
-                                 job.options.map.string(), x, y, surface.width() - 1, surface.height() - 1));
-  Replay replay;
-  replay.x = x;
-  replay.y = y;
-  replay.height_m = static_cast<double>(surface.heights_m(x, y));
-  replay.normal = glm::dvec3(surface.normals(x, y));
-  const uint32_t texel = static_cast<uint32_t>(surface.heights_m.index(x, y));
-  TracerCounts counts;
-  job.tracer->trace_texel(texel, true, replay.row, counts);
-  replay.rays = job.tracer->replay_texel(texel);
-  return replay;
-}
 
 std::string describe_replay(const Replay& replay) {
   std::string text =

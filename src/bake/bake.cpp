@@ -1,0 +1,143 @@
+#include "bake/bake.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "bake/make_tracer.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "transport/direct_light.h"
+#include "transport/links/spill_file.h"
+
+namespace hemibake {
+namespace {
+
+constexpr double kGib = 1024.0 * 1024 * 1024;
+constexpr uint64_t kErrorSeed = 0x5eed;  // added to the user's: the tracer that tells the noise
+
+PlanOptions plan_options(const Surface& surface, const BakeSettings& settings) {
+  const bool irradiance = settings.wants(BakeOutput::kIrradiance);
+  PlanOptions plan;
+  plan.patch_kind = *settings.patch_kind;
+  plan.with_links = settings.needs_form_factors();
+  plan.bounces = irradiance ? settings.bounces : 0;
+  plan.converges = settings.converge.has_value();
+  plan.scene_bytes = tracer_bytes(surface, settings);
+  if (settings.wants(BakeOutput::kNormal)) plan.kept_planes += 3;
+  if (irradiance && !plan.with_links) plan.kept_planes += 3;  // E₀, total, residual
+  return plan;
+}
+
+double allowed_bytes(const BakeSettings& settings) {
+  return settings.memory_gib ? *settings.memory_gib * kGib : static_cast<double>(machine_memory_bytes());
+}
+
+void refuse_beyond_memory(const BakeSettings& settings, const BakePlan& plan) {
+  const double needed = static_cast<double>(plan.memory_bytes()), allowed = allowed_bytes(settings);
+  if (needed <= allowed) return;
+  throw InputError(fmt::format("the bake needs {:.3g} GiB, expected at most the {:.3g} GiB {}", needed / kGib,
+                               allowed / kGib, settings.memory_gib ? "allowed" : "of this machine"));
+}
+
+TargetOptions target_options(const LoadedMap& map, const BakeSettings& settings) {
+  TargetOptions target;
+  target.error = *settings.target_error;
+  target.patch_kind = *settings.patch_kind;
+  target.with_light = settings.needs_form_factors() && settings.wants(BakeOutput::kIrradiance);
+  if (settings.tracer == TracerKind::kEmbree) target.fewest_rays = 16;
+  target.seed = settings.seed;
+  target.make_tracer = [&map, &settings](int rays, uint64_t seed) {
+    BakeSettings other = settings;
+    other.rays = rays;
+    other.seed = seed;
+    return make_tracer(map, other);
+  };
+  return target;
+}
+
+void choose_rays_and_bounces(PreparedBake& prepared) {
+  prepared.choice =
+      choose_for_target(prepared.map->surface, target_options(*prepared.map, prepared.settings));
+  prepared.settings.rays = prepared.choice->rays;
+  if (prepared.choice->bounces > 0) prepared.settings.bounces = prepared.choice->bounces;
+}
+
+Bounces bounce(const LightTransport& transport, const BakeSettings& settings) {
+  if (!settings.needs_form_factors()) return direct_light(transport);
+  return bounce_light(transport, {settings.bounces, settings.converge, settings.max_bounces});
+}
+
+void keep_planes(const Surface& surface, LightTransport& transport, BakeResult& result) {
+  Bake& planes = result.planes;
+  planes.width = surface.width();
+  planes.height = surface.height();
+  if (result.settings.wants(BakeOutput::kAo)) planes.visible_fraction = std::move(transport.visible_fraction);
+  if (result.settings.wants(BakeOutput::kBent)) planes.bent_normals = std::move(transport.bent_normals);
+  if (result.settings.wants(BakeOutput::kNormal)) planes.normals = surface.normals;
+  if (!result.settings.wants(BakeOutput::kIrradiance)) return;
+  planes.irradiance = std::move(result.bounces->irradiance);
+  planes.total = std::move(result.bounces->total);
+  planes.residual = std::move(result.bounces->residual);
+}
+
+}  // namespace
+
+PreparedBake prepare_bake(const LoadedMap& map, const BakeSettings& settings, MemoryLimit limit) {
+  PreparedBake prepared;
+  prepared.map = &map;
+  prepared.settings = settings;
+  const bool enforced = settings.limit_memory && limit == MemoryLimit::kEnforced;
+  // Twice: before the scene is built, which may be too large already, and with the links a pilot finds.
+  if (enforced) refuse_beyond_memory(settings, plan_planes(map.surface, plan_options(map.surface, settings)));
+  if (settings.target_error) choose_rays_and_bounces(prepared);
+  prepared.tracer = make_tracer(map, prepared.settings);
+  if (!settings.limit_memory) return prepared;
+  BakePlan& plan = prepared.plan;
+  plan = plan_bake(map.surface, *prepared.tracer, plan_options(map.surface, prepared.settings));
+  plan.spills = plan.link_bytes > 0 && static_cast<double>(plan.memory_bytes()) > allowed_bytes(settings);
+  if (enforced) refuse_beyond_memory(settings, plan);
+  return prepared;
+}
+
+BakeResult bake(const LoadedMap& map, const BakeSettings& settings, const Context& context) {
+  const ContextScope scope(context);
+  return bake(prepare_bake(map, settings));
+}
+
+BakeResult bake(const PreparedBake& prepared) {
+  const Surface& surface = prepared.map->surface;
+  const BakeSettings& settings = prepared.settings;
+  const auto start = std::chrono::steady_clock::now();
+  const double cpu_start = process_cpu_seconds();
+  BakeResult result;
+  result.settings = settings;
+  result.texel_size_m = surface.texel_size_m;
+  result.choice = prepared.choice;
+  result.planned_bytes = prepared.plan.memory_bytes();
+
+  LightTransport transport =
+      trace_surface(*prepared.tracer, settings.needs_form_factors(),
+                    prepared.plan.spills ? std::make_shared<SpillFile>(settings.spill_folder) : nullptr);
+  result.counts = transport.counts;
+  result.links = transport.final_gather.count() + transport.patch_form_factors.count();
+  result.trace_cpu_seconds = process_cpu_seconds() - cpu_start;
+
+  const bool has_form_factors = !transport.final_gather.empty();
+  if (has_form_factors) result.energy = measure_link_energy(surface, prepared.tracer->patch_set(), transport);
+
+  if (settings.wants(BakeOutput::kIrradiance)) result.bounces = bounce(transport, settings);
+  if (settings.estimate_errors && has_form_factors && result.bounces && result.bounces->irradiance.size() > 1)
+    result.errors =
+        estimate_errors(*prepared.tracer->reseeded(settings.seed + kErrorSeed), transport, *result.bounces);
+  if (settings.target_error)
+    result.reached =
+        measure_reached(surface, transport, settings.bounces, target_options(*prepared.map, settings));
+  keep_planes(surface, transport, result);
+  if (settings.keep_form_factors) result.transport = std::move(transport);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.cpu_seconds = process_cpu_seconds() - cpu_start;
+  return result;
+}
+
+}  // namespace hemibake

@@ -1,0 +1,48 @@
+#include "bake/load.h"
+
+#include <algorithm>
+
+#include "io/file_context.h"
+#include "io/image_io.h"
+#include "io/provenance.h"
+#include "surface/normals.h"
+
+namespace hemibake {
+namespace {
+
+Surface read_surface(const MapSettings& settings, double& lowest_m) {
+  Grid<float> heights = read_height_map(settings.map, settings.channel);
+  return with_file_context(settings.map, [&] {
+    if (settings.filter.radius > 0) heights = bilateral_filter(heights, settings.filter, settings.edge);
+    lowest_m = settings.amplitude_m * static_cast<double>(*std::ranges::min_element(heights.values));
+    return make_surface(std::move(heights), settings.size_m, settings.amplitude_m, settings.edge);
+  });
+}
+
+void read_normals(const MapSettings& settings, NormalLength lengths, LoadedMap& map) {
+  const auto encoded = read_normal_map(settings.normal_map, map.surface.width(), map.surface.height());
+  map.surface.normals =
+      with_file_context(settings.normal_map, [&] { return decode_normal_map(encoded, *settings.normal_y); });
+  if (lengths == NormalLength::kStored) map.normal_lengths = normal_map_lengths(encoded);
+}
+
+}  // namespace
+
+MapHashes hash_files(const MapSettings& settings) {
+  MapHashes hashes{sha256_of_file(settings.map), ""};
+  if (settings.normals_from == NormalSource::kMap) hashes.normal_map = sha256_of_file(settings.normal_map);
+  return hashes;
+}
+
+LoadedMap load_map(const MapSettings& settings, NormalLength lengths) {
+  LoadedMap map;
+  map.amplitude_m = settings.amplitude_m;
+  map.surface = read_surface(settings, map.lowest_m);
+  map.sha256 = hash_files(settings);
+  if (settings.normals_from == NormalSource::kFaces)
+    map.surface.normals = angle_weighted_normals(map.surface);
+  if (settings.normals_from == NormalSource::kMap) read_normals(settings, lengths, map);
+  return map;
+}
+
+}  // namespace hemibake

@@ -1,0 +1,33 @@
+// The map of a bake, read and made a surface.
+#pragma once
+
+#include <string>
+
+#include "bake/settings.h"
+#include "core/grid.h"
+#include "surface/surface.h"
+
+namespace hemibake {
+
+// SHA-256 of the files read, 64 hexadecimal digits each; empty: none.
+struct MapHashes {
+  std::string map, normal_map;
+};
+
+struct LoadedMap {
+  Surface surface;
+  // The map's, as the march needs them: metres per unit of map value, and the height that the surface's 0
+  // stands for.
+  double amplitude_m = 0, lowest_m = 0;
+  Grid<float> normal_lengths;  // as the normal map stores them; empty unless they are to be followed
+  MapHashes sha256;
+};
+
+// Hashes the files of a map. Throws InputError where one cannot be read.
+MapHashes hash_files(const MapSettings& settings);
+
+// Reads, filters, scales; takes normals as the settings say, their lengths only where they are to be kept.
+// The settings are resolved. Throws InputError naming the file.
+LoadedMap load_map(const MapSettings& settings, NormalLength lengths = NormalLength::kUnit);
+
+}  // namespace hemibake

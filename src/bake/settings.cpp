@@ -1,0 +1,254 @@
+#include "bake/settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hemibake {
+namespace {
+
+// Azimuths and rays that serve most maps (src/tracers/README.md).
+constexpr int kDefaultAzimuths = 64, kDefaultRays = 256;
+constexpr int kMaxRays = 1 << 20;
+constexpr int kMaxAzimuths = 65536;
+constexpr int kMaxStoredBounces = 1000;
+constexpr int kMaxBounces = 1000000;
+constexpr int kMaxSteps = 10000000;
+constexpr double kLargestLengthM = 1e9;
+
+// A field that is on the command line only.
+Field unrecorded(std::string name, std::string group, Value value, std::string help) {
+  Field field;
+  field.name = std::move(name);
+  field.group = std::move(group);
+  field.help = std::move(help);
+  field.value = std::move(value);
+  return field;
+}
+
+Field recorded(std::string name, std::string key, std::string group, Value value, std::string help) {
+  Field field = unrecorded(std::move(name), std::move(group), std::move(value), std::move(help));
+  field.key = std::move(key);
+  return field;
+}
+
+Field shown_as(Field field, std::string placeholder) {
+  field.placeholder = std::move(placeholder);
+  return field;
+}
+
+Field when(std::function<bool()> has_meaning, Field field) {
+  field.recorded = std::move(has_meaning);
+  return field;
+}
+
+// What the preset stands for, where the user did not set it.
+void apply_mayaux2018(MapSettings& map, BakeSettings& settings, const IsGiven& given) {
+  const auto set = [&given](const char* name, auto& setting, const auto& value) {
+    if (!given(name)) setting = value;
+  };
+  const MarchOptions march = published_march();
+  const FilterOptions filter = published_filter();
+  set("tracer", settings.tracer, TracerKind::kMarch);
+  set("rays", settings.rays, march.rays);
+  set("cone", settings.cone_degrees, march.cone_degrees);
+  set("max-steps", settings.max_steps, march.max_steps);
+  set("lift", settings.lift_percent, march.lift_percent);
+  set("filter-radius", map.filter.radius, filter.radius);
+  set("filter-tolerance", map.filter.tolerance, filter.tolerance);
+  set("filter-sum", map.filter.sum, filter.sum);
+  set("ray-set", settings.ray_set, march.ray_set);
+  set("lookup", settings.lookup, march.lookup);
+  set("normalize", settings.weights, march.weights);
+  if (map.normal_map.empty()) return;
+  set("normal-length", settings.normal_length, NormalLength::kStored);
+  set("normal-y", map.normal_y, NormalY::kUp);
+}
+
+void validate_target_error(const BakeSettings& settings, const IsGiven& given) {
+  if (!settings.target_error) {
+    if (settings.explain) throw SettingError("explain", "explains target-error, expected it too");
+    return;
+  }
+  if (settings.tracer == TracerKind::kMarch)
+    throw SettingError("target-error",
+                       "a march has errors that rays do not mend, expected tracer embree or slice");
+  if (settings.max_distance_m || settings.cone_degrees < 180)
+    throw SettingError("target-error",
+                       "is against the whole hemisphere, expected neither max-distance nor cone");
+  for (const char* chosen : {"rays", "bounces"})
+    if (given(chosen)) throw SettingError(chosen, "is chosen by target-error, expected one of the two");
+}
+
+void validate_tracer(const BakeSettings& settings) {
+  if (settings.tracer == TracerKind::kMarch && settings.patch_kind == PatchKind::kFacets)
+    throw SettingError("patches", "a march knows no facets, expected texels with tracer march");
+  if (settings.tracer != TracerKind::kSlice) return;
+  if (*settings.rays > kMaxAzimuths)
+    throw SettingError("rays", fmt::format("{} azimuths, expected at most {} with tracer slice",
+                                           *settings.rays, kMaxAzimuths));
+  if (settings.cone_degrees < 180)
+    throw SettingError("cone", "slices serve the whole hemisphere, expected 180 with tracer slice");
+}
+
+void validate_normals(const MapSettings& map, const BakeSettings& settings, const IsGiven& given) {
+  const bool has_map = map.normals_from == NormalSource::kMap;
+  if (has_map && map.normal_map.empty())
+    throw SettingError("normals-from", "a normal map has a file, expected normals FILE");
+  if (has_map && !map.normal_y)
+    throw InputError(map.normal_map.string() +
+                     ": the direction of its green channel is not known, expected normal-y up or down");
+  if (!has_map && map.normal_y)
+    throw SettingError("normal-y", "there is no normal map, expected normals FILE with it");
+  if (has_map && given("normals-from"))
+    throw SettingError("normals-from", "normals come from a normal map already, expected one of the two");
+  if (settings.normal_length == NormalLength::kStored && (!has_map || settings.tracer != TracerKind::kMarch))
+    throw SettingError("normal-length", "stored lengths need normals and tracer march, expected both");
+}
+
+}  // namespace
+
+bool BakeSettings::wants(BakeOutput output) const {
+  return std::ranges::find(outputs, output) != outputs.end();
+}
+
+bool BakeSettings::needs_form_factors() const {
+  return keep_form_factors || (wants(BakeOutput::kIrradiance) && (bounces > 0 || converge));
+}
+
+std::vector<Field> map_fields(MapSettings& s) {
+  const auto filtered = [&s] { return s.filter.radius > 0; };
+  const auto has_normal_map = [&s] { return s.normals_from == NormalSource::kMap; };
+  Field map =
+      unrecorded("MAP", "", file(s.map), "height map: PNG, TIFF, EXR or anything else OpenImageIO reads");
+  map.required = true;
+  Field normals =
+      recorded("normals-from", "normals", "Surface", choice(s.normals_from, {"heights", "faces", "map"}),
+               "without a normal map: central differences of the heights, or angle-weighted faces");
+  normals.key_prefix = "from ";
+  normals.value.type = "TEXT:{heights,faces}";  // a map is said by its file
+  return {
+      map,
+      recorded("size", "size_m", "Surface", positive(s.size_m, kLargestLengthM),
+               "length of the map's longer side, m"),
+      recorded("amplitude", "amplitude_m", "Surface", number(s.amplitude_m, 0, kLargestLengthM),
+               "height of map value 1 over 0, m"),
+      recorded("edge", "edge", "Surface", choice(s.edge, {"wrap", "open"}),
+               "beyond the border: the map again for ever (wrap), or nothing (open)"),
+      recorded("channel", "channel", "", text(s.channel),
+               "channel of the map to take, by name or index; default: green, or the only one"),
+      recorded("filter-radius", "filter_radius", "March", number(s.filter.radius, 0, 16),
+               "bilateral filter of the heights first, texels; 0: none [1]"),
+      when(filtered, recorded("filter-tolerance", "filter_tolerance", "March",
+                              positive(s.filter.tolerance, 1e6), "its range, in map values 0..1 [0.2]")),
+      when(filtered, recorded("filter-sum", "filter_sum", "March", choice(s.filter.sum, {"all", "published"}),
+                              "its whole kernel, or the part the published shader adds up [published]")),
+      normals,
+      shown_as(unrecorded("normals", "Surface", file(s.normal_map),
+                          "normal map of the same size; needs --normal-y"),
+               "FILE"),
+      when(has_normal_map,
+           recorded("normal-y", "normal_y", "Surface", choice(s.normal_y, {"up", "down"}),
+                    "green of the normal map grows against the image rows (up, OpenGL) or along them (down, "
+                    "DirectX)")),
+  };
+}
+
+// In the order of the record; the help sorts by group.
+std::vector<Field> bake_fields(BakeSettings& s) {
+  const auto marches = [&s] { return s.tracer == TracerKind::kMarch; };
+  const auto shoots_rays = [&s] { return s.tracer == TracerKind::kEmbree; };
+  const auto links_texels = [&s] {
+    return s.tracer != TracerKind::kMarch && s.patch_kind == PatchKind::kTexels;
+  };
+  const auto is_limited = [&s] { return s.max_distance_m.has_value(); };
+  const auto converges = [&s] { return s.converge.has_value(); };
+  const auto has_target = [&s] { return s.target_error.has_value(); };
+  return {
+      recorded("tracer", "tracer", "Tracing", choice(s.tracer, {"embree", "march", "slice"}),
+               "how visibility is found: vertical slices (default), rays with Embree (default with --cone, "
+               "--directions or over 65536 --rays, which slices do not have), or the texel march of 2018"),
+      recorded("rays", "rays", "Tracing", whole(s.rays, 1, kMaxRays),
+               "azimuths of slices per texel (default 64), or rays per texel and per patch (default 256)"),
+      recorded("cone", "cone_degrees", "Tracing", positive(s.cone_degrees, 180),
+               "full aperture of the texels' rays about the normal, degrees"),
+      when(is_limited, recorded("max-distance", "max_distance_m", "Tracing", positive(s.max_distance_m, 1e30),
+                                "hits further along the ray count as sky, m; default: no limit")),
+      unrecorded("explain", "Tracing", flag(s.explain),
+                 "with --target-error: say how rays and bounces were chosen"),
+      recorded("seed", "seed", "Tracing", whole(s.seed, 0), "another number, other random rotations"),
+
+      recorded("patches", "patches", "Light", choice(s.patch_kind, {"facets", "texels"}),
+               "what re-emits light: the surface's triangles (default), or the texels (as published in 2018; "
+               "the only ones of march)"),
+      unrecorded("preset", "March", choice(s.preset, {"published"}),
+                 "published: the experiment of 2018, all options of this group and --tracer march --rays "
+                 "1024 --cone 179 --normal-y up; any of them given too wins"),
+      when(marches, recorded("max-steps", "max_steps", "March", whole(s.max_steps, 1, kMaxSteps),
+                             "steps of a texel after which a march is sky [published: 200]")),
+      when(marches, recorded("lift", "lift_percent", "March", number(s.lift_percent, 0, 100),
+                             "height of a march's start over its texel, percent of the amplitude [1]")),
+      when(marches, recorded("ray-set", "ray_set", "March", choice(s.ray_set, {"rotated", "published"}),
+                             "turned per texel, or one set for all as published [published]")),
+      when(marches,
+           recorded("lookup", "lookup", "March", choice(s.lookup, {"bilinear", "published"}),
+                    "heights between texels: bilinear, or as the published sampler did [published]")),
+      when(marches, recorded("normalize", "normalize", "March", choice(s.weights, {"exact", "published"}),
+                             "weights that sum to 1, or 2 cos/N as published [published]")),
+      when(marches,
+           recorded("normal-length", "normal_length", "March", choice(s.normal_length, {"unit", "stored"}),
+                    "rays follow unit normals, or the map's as stored [stored]")),
+
+      when(shoots_rays,
+           recorded("directions", "directions", "Tracing", choice(s.directions, {"uniform", "cosine"}),
+                    "spread of the texels' rays: equal solid angles (default), or equal shares of "
+                    "irradiance")),
+      when(links_texels,
+           recorded("texel-links", "texel_links", "Light", choice(s.texel_links, {"nearest", "bilinear"}),
+                    "with --patches texels: a hit links to the nearest texel or to four")),
+      recorded("outputs", "outputs", "Output", choices(s.outputs, {"ao", "irradiance", "bent", "normal"}),
+               "planes to write, separated by commas; links are traced only for irradiance with bounces, or "
+               "--links"),
+      recorded("bounces", "bounces", "Light", whole(s.bounces, 0, kMaxStoredBounces),
+               "bounces stored one by one"),
+      when(converges,
+           recorded("converge", "converge", "Light", number(s.converge, 1e-12, 1),
+                    "go on, into the total only, until less than this share of pi is under way in the worst "
+                    "texel")),
+      when(converges, recorded("max-bounces", "max_bounces", "Light", whole(s.max_bounces, 1, kMaxBounces),
+                               "where --converge gives up")),
+
+      when(has_target,
+           recorded("target-error", "target_error", "Tracing", number(s.target_error, 1e-4, 0.5),
+                    "choose rays and bounces so that the rms errors of AO, E0/pi and E/pi (albedo 0.2 to "
+                    "0.95) stay below this; a sample of texels is traced first, and another afterwards says "
+                    "what was reached")),
+      unrecorded("memory", "Output", positive(s.memory_gib, 1e6),
+                 "links that need more go to a temporary file beside the output, a bake that still does is "
+                 "refused, GiB; default: what the machine has"),
+  };
+}
+
+void resolve_defaults(MapSettings& map, BakeSettings& settings, const IsGiven& given) {
+  if (settings.preset == Preset::kMayaux2018) apply_mayaux2018(map, settings, given);
+  if (!settings.tracer) {
+    const bool asks_for_rays =
+        settings.cone_degrees < 180 || settings.directions || settings.rays.value_or(0) > kMaxAzimuths;
+    settings.tracer = asks_for_rays ? TracerKind::kEmbree : TracerKind::kSlice;
+  }
+  if (!settings.directions) settings.directions = DirectionSet::kUniform;
+  if (!settings.rays) settings.rays = settings.tracer == TracerKind::kSlice ? kDefaultAzimuths : kDefaultRays;
+  if (!settings.patch_kind)
+    settings.patch_kind = settings.tracer == TracerKind::kMarch ? PatchKind::kTexels : PatchKind::kFacets;
+  if (!map.normal_map.empty()) map.normals_from = NormalSource::kMap;
+}
+
+void validate(const MapSettings& map, const BakeSettings& settings, const IsGiven& given) {
+  validate_target_error(settings, given);
+  validate_tracer(settings);
+  validate_normals(map, settings, given);
+  if (settings.converge && !settings.wants(BakeOutput::kIrradiance))
+    throw SettingError("converge", "irradiance is not among outputs, expected it there");
+}
+
+}  // namespace hemibake

@@ -1,0 +1,107 @@
+// What can be asked of a bake: the map it is made of, and how its light is traced and bounced.
+//
+// Every setting is described once, by a field of map_fields or bake_fields. From these come the options of
+// the command line with their help, what a bake records of how it was made, and what is read back of it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/field.h"
+#include "surface/filter.h"
+#include "surface/normals.h"
+#include "surface/surface.h"
+#include "tracers/march/march.h"
+#include "tracers/ray_options.h"
+
+namespace hemibake {
+
+// Where the texels' normals come from: central differences of the heights, angle-weighted faces, or a file.
+enum class NormalSource { kHeights, kFaces, kMap };
+
+// Rays of a march follow unit normals, or the normal map's as long as they are stored.
+enum class NormalLength { kUnit, kStored };
+
+struct MapSettings {
+  std::filesystem::path map;
+  std::string channel;       // empty: green, or the only one
+  double size_m = 1;         // the longer side
+  double amplitude_m = 0.1;  // height of map value 1 over 0
+  Edge edge = Edge::kWrap;
+  FilterOptions filter{.radius = 0};
+  NormalSource normals_from = NormalSource::kHeights;
+  std::filesystem::path normal_map;
+  std::optional<NormalY> normal_y;  // required with a normal map
+};
+
+enum class TracerKind { kEmbree, kMarch, kSlice };
+enum class BakeOutput { kAo, kIrradiance, kBent, kNormal };
+enum class Preset { kMayaux2018 };
+
+struct BakeSettings {
+  std::optional<Preset> preset;
+  std::optional<TracerKind> tracer;        // absent: slice, or embree where another setting asks for rays
+  std::optional<int> rays;                 // absent: what serves most maps
+  double cone_degrees = 180;               // (0, 180]
+  std::optional<DirectionSet> directions;  // absent: uniform
+  std::optional<double> max_distance_m;    // absent: no limit
+  std::optional<double> target_error;      // chooses rays and bounces
+  bool explain = false;
+  uint64_t seed = 0;
+  // Of the march.
+  int max_steps = 200;
+  double lift_percent = 1;
+  MarchRays ray_set = MarchRays::kRotated;
+  MarchLookup lookup = MarchLookup::kBilinear;
+  MarchWeights weights = MarchWeights::kExact;
+  NormalLength normal_length = NormalLength::kUnit;
+
+  std::optional<PatchKind> patch_kind;  // absent: what the tracer has; facets, where it has both
+  TexelLinks texel_links = TexelLinks::kBilinear;
+  int bounces = 20;                // stored one by one
+  std::optional<double> converge;  // largest residual of a texel, over π
+  int max_bounces = 2000;
+
+  std::vector<BakeOutput> outputs = {BakeOutput::kAo, BakeOutput::kIrradiance, BakeOutput::kBent,
+                                     BakeOutput::kNormal};
+  std::optional<double> memory_gib;  // absent: what the machine has
+
+  // Not on the command line.
+  bool keep_form_factors = false;      // in the result
+  bool limit_memory = true;            // plan first, spill or refuse what does not fit; false: just go
+  bool estimate_errors = true;         // where there are form factors and a bounce
+  std::filesystem::path spill_folder;  // empty: the current one
+
+  bool wants(BakeOutput output) const;
+  // Whether form factors are traced: for bounces, or to be kept.
+  bool needs_form_factors() const;
+};
+
+// A setting that does not go with another. The message begins with the setting's name.
+class SettingError : public InputError {
+ public:
+  SettingError(std::string name, const std::string& message)
+      : InputError(name + ": " + message), setting(std::move(name)) {}
+  std::string setting;
+};
+
+// The fields refer to `settings`, which must outlive them.
+std::vector<Field> map_fields(MapSettings& settings);
+std::vector<Field> bake_fields(BakeSettings& settings);
+
+// Returns whether the user set a field of this name.
+using IsGiven = std::function<bool(const std::string& name)>;
+
+// Fills in what follows from other settings: the preset (where its settings are not given), the tracer, its
+// rays, directions and patches.
+void resolve_defaults(MapSettings& map, BakeSettings& settings, const IsGiven& given);
+
+// Throws SettingError for combinations that make no sense. The settings are resolved.
+void validate(const MapSettings& map, const BakeSettings& settings, const IsGiven& given);
+
+}  // namespace hemibake
