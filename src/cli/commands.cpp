@@ -14,6 +14,7 @@
 #include "cli/print/progress_line.h"
 #include "cli/signals.h"
 #include "core/error.h"
+#include "io/provenance.h"
 
 namespace hemibake {
 

@@ -8,6 +8,7 @@
 
 #include "cli/options/command.h"
 #include "fitting/fitted_model.h"
+#include "io/file_context.h"
 #include "io/fit_file.h"
 #include "io/model_table.h"
 #include "io/output_file.h"
@@ -17,7 +18,7 @@ namespace hemibake {
 namespace {
 
 const std::map<std::string, Language> kLanguages = {
-    {"glsl", Language::glsl}, {"hlsl", Language::hlsl}, {"cpp", Language::cpp}};
+    {"glsl", Language::kGlsl}, {"hlsl", Language::kHlsl}, {"cpp", Language::kCpp}};
 constexpr const char* kTableTarget = "csv";
 
 struct ExportOptions {
@@ -27,22 +28,17 @@ struct ExportOptions {
   std::string model = "bounded";
 };
 
-// The model in the form asked for.
-template <class Model>
-void write_model(const Model& model, const ExportOptions& options, const std::vector<std::string>& origin) {
-  if (options.target == kTableTarget) return write_csv(options.output, table_from_model(model));
-  OutputFile file(options.output);
-  file.write(shader_text(model, kLanguages.at(options.target), origin));
-  file.commit();
-}
-
 int run_export(const ExportOptions& options, const Invocation& invocation) {
   check_output_path(options.output);
   const FitFile file = read_fits(options.fits);
-  if (options.model == "bounded") {
-    write_model(bounded_model(file, options.fits), options, bounded_model_origin(file, options.fits));
+  const ModelKind kind = model_kind_from_string(options.model);
+  const ShaderModel model = with_file_context(options.fits, [&] { return fitted_model(file.fits, kind); });
+  if (options.target == kTableTarget) {
+    write_csv(options.output, table_from_model(model));
   } else {
-    write_model(guarded_model(file, options.fits), options, guarded_model_origin(file, options.fits));
+    OutputFile output(options.output);
+    output.write(shader_text(model, kLanguages.at(options.target), model_origin(file, kind)));
+    output.commit();
   }
   invocation.print(
       {{"output", options.output.string()}, {"model", options.model}, {"to", options.target}},

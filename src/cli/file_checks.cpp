@@ -87,7 +87,7 @@ Checks checks_of_fit(const FitFile& file, double tolerance) {
   if (!published.empty())
     append_model_checks(
         "published",
-        check_model(PublishedModel{published["k"], published["e"], published["A"], published["B"]},
+        check_model(Mayaux2018Model{published["k"], published["e"], published["A"], published["B"]},
                     tolerance),
         bounded.empty(), checks);
   return checks;

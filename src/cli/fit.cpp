@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/options/command.h"
+#include "cli/print/fits.h"
 #include "cli/print/warnings.h"
 #include "fitting/models.h"
 #include "io/curves_file.h"
@@ -20,22 +21,11 @@ struct FitOptions {
   std::vector<std::string> curves;
   std::filesystem::path output;
   std::vector<std::string> models = {"published", "bounded"};
-  std::string abscissa = to_string(Abscissa::center);
-  std::string weights = to_string(Weights::none);
+  std::string abscissa = to_string(Abscissa::kCenter);
+  std::string weights = to_string(Weights::kNone);
 };
 
-std::string describe(const NamedFit& named) {
-  const Fit& fit = named.fit;
-  std::string text = fmt::format("{:12} {}\n{:12}", named.name, fit.formula, "");
-  for (const FitParameter& parameter : fit.parameters) {
-    text += fmt::format(" {} = {:.6g}", parameter.name, parameter.value);
-    if (parameter.standard_error) text += fmt::format(" ± {:.2g}", *parameter.standard_error);
-    text += ',';
-  }
-  return text + fmt::format(" rms {:.5f}, max {:.5f}, {} points\n", fit.rms, fit.max_error, fit.points);
-}
-
-// `input` and `input_sha256` name every input, in order.
+// Names every input, in order, in `input` and `input_sha256`.
 Provenance provenance_of(const std::vector<std::string>& paths, std::string_view command) {
   Provenance provenance = make_provenance(command, paths[0]);
   for (size_t i = 1; i < paths.size(); ++i) {
@@ -51,7 +41,7 @@ int run_fit(const FitOptions& options, const Invocation& invocation) {
   check_output_path(options.output, {".json"});
   const Abscissa abscissa = abscissa_from_string(options.abscissa);
   const Weights weights = weights_from_string(options.weights);
-  if (abscissa == Abscissa::published && options.curves.size() > 1) {
+  if (abscissa == Abscissa::kMayaux2018 && options.curves.size() > 1) {
     throw InputError("--abscissa published: several sets of curves, expected one");
   }
   std::vector<Curves> sets;
@@ -69,9 +59,7 @@ int run_fit(const FitOptions& options, const Invocation& invocation) {
   write_fits(options.output, file);
 
   print_warnings(names, fit_warnings(file.fits));
-  std::string text;
-  for (const NamedFit& named : file.fits) text += describe(named);
-  invocation.print(json_from_fits(file), text);
+  invocation.print(json_from_fits(file), text_from_fits(file.fits));
   return 0;
 }
 

@@ -73,15 +73,16 @@ std::optional<ShadingModel> find_model(const RenderOptions& options, const Bake&
   } else {
     path = options.bake;
     try {
-      fits.fits = fit_model(options.model, make_curves(bake, kBins), Abscissa::center, Weights::none);
+      fits.fits = fit_model(options.model, make_curves(bake, kBins), Abscissa::kCenter, Weights::kNone);
     } catch (const std::runtime_error& error) {
       throw_if_cancelled();
       reason = error.what();
       return std::nullopt;
     }
   }
-  if (options.model == "published") return shading_model("published", guarded_model(fits, path));
-  return shading_model("bounded", bounded_model(fits, path));
+  const ShaderModel model = with_file_context(
+      path, [&] { return fitted_model(fits.fits, model_kind_from_string(options.model)); });
+  return std::visit([&](const auto& m) { return shading_model(options.model, m); }, model);
 }
 
 // Returns the bake's form factors: of its links file, or traced again.

@@ -9,6 +9,7 @@
 #include "io/output_file.h"
 #include "report/html_data.h"
 #include "report/html_folder.h"
+#include "report/html_json.h"
 #include "report/html_page.h"
 #include "report/html_planes.h"
 
@@ -34,10 +35,12 @@ int run_report(ReportOptions options, const Invocation& invocation) {
   const Bake bake = folder.bake ? folder.bake->bake : Bake{};
   const PackedPlanes planes =
       with_file_context(options.folder / "bake.exr", [&] { return pack_planes(bake, options.image_size); });
-  const std::vector<ReportModel> models = report_models(folder);
+  const std::vector<ReportModel> models =
+      with_file_context(options.folder / "fit.json", [&] { return report_models(folder.fits); });
   const Rgb albedo = {options.albedo[0], options.albedo[1], options.albedo[2]};
+  const ReportData data = gather_report(folder, models, albedo);
   const std::string page =
-      fill_page(page_template(), report_data(folder, models, planes, albedo), planes, folder.pictures);
+      fill_page(page_template(), json_from_report(folder, models, planes, data), planes, folder.pictures);
   OutputFile file(options.output);
   file.write(page);
   file.commit();
@@ -50,7 +53,9 @@ int run_report(ReportOptions options, const Invocation& invocation) {
                     {"irradiance_error_over_pi", planes.irradiance_error_over_pi},
                     {"total_error_over_pi", planes.total_error_over_pi},
                     {"albedo", albedo},
-                    {"probes", report_probes(bake, models, planes.stride, albedo)}},
+                    {"probes", json_from_probes(report_probes(bake, models, planes.stride, albedo), models)},
+                    {"bins", folder.curves ? json_from_totals(*folder.curves, data.totals)
+                                           : nlohmann::ordered_json::array()}},
                    fmt::format("{}: {:.1f} MiB\n", options.output.string(),
                                static_cast<double>(page.size()) / (1024.0 * 1024)));
   return 0;

@@ -38,7 +38,7 @@ FitFile fit_all(const Curves& curves, const Provenance& provenance) {
   FitFile file;
   file.provenance = provenance;
   for (const char* model : {"published", "bounded"})
-    for (NamedFit& named : fit_model(model, curves, Abscissa::center, Weights::none))
+    for (NamedFit& named : fit_model(model, curves, Abscissa::kCenter, Weights::kNone))
       file.fits.push_back(std::move(named));
   return file;
 }

@@ -7,17 +7,18 @@
 #include <limits>
 
 #include "core/constants.h"
+#include "transport/series.h"
 
 namespace hemibake {
 namespace {
 
-// By how much a value is outside low..high; NaN stays NaN and fails.
+// Returns the distance of a value from low..high; NaN stays NaN and fails.
 double outside(double value, double low, double high) {
   if (std::isnan(value)) return value;
   return std::max({0.0, low - value, value - high});
 }
 
-// The worst bin of one kind of violation.
+// Keeps the worst bin of one kind of violation.
 struct Worst {
   double value = 0;
   size_t bin = 0;
@@ -43,11 +44,9 @@ Checks check_curves(const Curves& curves, double tolerance, bool require_whole_e
     // Both bounds rise with α, so the ends of the bin bound the mean of its texels.
     const double low = bin.ao_low * bin.ao_low, high = bin.ao_high * (2 - bin.ao_high);
     direct.offer(outside(bin.bounces.front().mean / kPi, low, high), b);
-    double sum = 0;
-    for (const BounceStatistics& bounce : bin.bounces) {
-      range.offer(outside(bounce.mean / kPi, 0, 1), b);
-      sum += bounce.mean / kPi;
-    }
+    const auto over_pi = [&](size_t bounce) { return bin.bounces[bounce].mean / kPi; };
+    for (size_t k = 0; k < bin.bounces.size(); ++k) range.offer(outside(over_pi(k), 0, 1), b);
+    const double sum = sum_bounces(bin.bounces.size(), over_pi, 1);
     excess.offer(std::isnan(sum) ? sum : std::max(0.0, sum - 1), b);
     if (!(std::abs(sum - 1) <= std::abs(sum_furthest_from_1 - 1))) {
       sum_furthest_from_1 = sum;

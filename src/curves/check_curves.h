@@ -1,4 +1,4 @@
-// What must hold of curves whatever the map.
+// Checks the invariants of curves, which hold for any map.
 #pragma once
 
 #include "core/check.h"
@@ -6,9 +6,8 @@
 
 namespace hemibake {
 
-// Every bin: mean AO inside the bin, E₀/π between α² and α(2−α), no irradiance outside 0..π, and Σ_b E_b/π
-// not above 1 + tolerance. The sum itself, which stays below 1 where bounces are still under way, is judged
-// only if `require_whole_energy`: then |Σ − 1| ≤ tolerance.
+// Checks every bin: mean AO inside it, α² ≤ E₀/π ≤ α(2−α), 0 ≤ E_b ≤ π, Σ_b E_b/π ≤ 1 + tolerance.
+// require_whole_energy: demands |Σ − 1| ≤ tolerance too; the sum is below 1 while bounces are under way.
 Checks check_curves(const Curves& curves, double tolerance, bool require_whole_energy);
 
 }  // namespace hemibake

@@ -5,16 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constants.h"
 #include "core/error.h"
 #include "core/statistics.h"
+#include "transport/series.h"
 
 namespace hemibake {
 namespace {
 
-// Rounding in a tracer's sum of weights may leave α this far outside 0..1 (a few float ulps).
+// Distance of α from 0..1 that rounding in a tracer's sum of weights may leave (a few float ulps).
 constexpr float kAoRounding = 1e-6F;
 
-// Texel `i` of a grid as "(x, y)".
+// Writes texel `i` of a grid as "(x, y)".
 std::string texel_name(const Grid<float>& grid, size_t i) {
   const size_t width = static_cast<size_t>(grid.width);
   return fmt::format("({}, {})", i % width, i / width);
@@ -46,6 +48,22 @@ void check_planes(const Bake& bake) {
 }  // namespace
 
 double bin_center(const CurveBin& bin) { return 0.5 * (bin.ao_low + bin.ao_high); }
+
+double total_over_pi(const CurveBin& bin, double albedo) {
+  const size_t count = bin.bounces.size();
+  const auto mean = [&](size_t b) { return bin.bounces[b].mean; };
+  double total = sum_bounces(count, mean, albedo);
+  if (count < 3 || mean(count - 1) >= mean(count - 2)) return total / kPi;
+  // The energy not yet seen bounds the tail at albedo 1: the last two bounces of a slow bin do not tell it
+  // well.
+  const double last = mean(count - 1);
+  const double tail = series_tail(mean(count - 2), last, 1, kPi - sum_bounces(count, mean, 1));
+  const double ratio = tail / (tail + last);
+  if (tail > 0)
+    total +=
+        series_tail(std::pow(albedo, count - 2) * last / ratio, std::pow(albedo, count - 1) * last, albedo);
+  return total / kPi;
+}
 
 Curves make_curves(const Bake& bake, int bins) {
   check_planes(bake);

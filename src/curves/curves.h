@@ -1,6 +1,5 @@
-// Curves: irradiance against ambient occlusion. Texels are sorted into bins by their AO; each bin keeps mean
-// and spread of every bounce, because irradiance is not a function of AO and a mean without its spread hides
-// that.
+// Sorts texels into bins by their AO and keeps the mean and spread of every bounce in each: irradiance is not
+// a function of AO, which a mean without its spread would hide.
 #pragma once
 
 #include <span>
@@ -10,7 +9,7 @@
 
 namespace hemibake {
 
-// Irradiance of one bounce over the texels of one bin, 0..π at albedo 1.
+// Holds the irradiance of one bounce over the texels of one bin, 0..π at albedo 1.
 struct BounceStatistics {
   double mean = 0;
   double stddev = 0;  // of the texels, not of the mean; divides by the count
@@ -30,17 +29,22 @@ struct Curves {
   std::vector<CurveBin> bins;
 };
 
-// Centre of a bin on the AO axis, 0..1.
+// Returns the centre of a bin on the AO axis, 0..1.
 double bin_center(const CurveBin& bin);
 
-// The histogram of a bake: bin min(bins − 1, ⌊bins · α⌋), sums in double in texel order.
+// Returns E/π of all bounces of one bin at albedo `albedo`, 0..1: Σ ρᵇ E_b/π and the tail after the last
+// stored bounce, a geometric series with the ratio of the last two bounces, lowered where the total at albedo
+// 1 would exceed π.
+double total_over_pi(const CurveBin& bin, double albedo);
+
+// Returns the histogram of a bake: texels of bin min(bins − 1, ⌊bins · α⌋), summed in double in texel order.
 // bake: planes `visible_fraction` (0..1) and at least one of `irradiance` (0..), all of the same size.
 // bins: 1 and up.
 // Throws InputError ("what was wrong, what was expected", no file) on a missing plane or an unusable texel.
 Curves make_curves(const Bake& bake, int bins);
 
-// The bins of several sets side by side, to fit one set of constants to all: bins overlap, and every set
-// counts by the number of its bins. sets: at least one; the curves that all of them have are kept.
+// Joins the bins of several sets, to fit one set of constants to all. Bins overlap; a set counts by its bins.
+// sets: at least one; bounces that all of them have are kept.
 Curves pool_curves(std::span<const Curves> sets);
 
 }  // namespace hemibake

@@ -6,8 +6,9 @@
 #include "core/constants.h"
 #include "fitting/bounded.h"
 #include "fitting/least_squares.h"
-#include "fitting/published.h"
+#include "fitting/mayaux2018.h"
 #include "model/closed_forms.h"
+#include "model/model.h"
 
 namespace hemibake {
 namespace {
@@ -15,19 +16,19 @@ namespace {
 constexpr int kAlbedoSteps = 10;
 
 std::vector<CurvePoint> points_of(const Curves& curves, int bounce) {
-  return curve_points(curves, bounce, Abscissa::center, Weights::none);
+  return curve_points(curves, bounce, Abscissa::kCenter, Weights::kNone);
 }
 
 std::vector<CurvePoint> totals_of(const Curves& curves) {
-  return total_points(curves, fit_albedos(), Abscissa::center, Weights::none);
+  return total_points(curves, fit_albedos(), Abscissa::kCenter, Weights::kNone);
 }
 
-// F₀ and 1 − F₀ of one α.
+// Holds F₀ (factor) and 1 − F₀ (blocked) of one α.
 struct Direct {
   double ao = 0, factor = 0, blocked = 0;
 };
 
-// The formulas of F₀ by how much of k0, k1 is free.
+// Evaluates F₀ of the bounded model.
 struct DirectModel {
   double k0 = 0, k1 = 0;
 
@@ -36,7 +37,7 @@ struct DirectModel {
   }
 };
 
-// s = k everywhere: α(1 + k(1−α)).
+// Fits F₀ = α(1 + k(1−α)): s = k everywhere.
 DirectModel fit_line(const Curves& curves) {
   const Formula formula{"line F0", "", {{"k", -1, 1}}, {{0.5}}};
   const Fit fit = fit_formula<1>(formula, points_of(curves, 0), [](const auto* p, const CurvePoint& point) {
@@ -45,7 +46,7 @@ DirectModel fit_line(const Curves& curves) {
   return {parameter_value(fit, "k"), parameter_value(fit, "k")};
 }
 
-// k1 = 1: nearly open ground sees its sky overhead.
+// Fits k0 with k1 = 1: nearly open ground sees its sky overhead.
 DirectModel fit_overhead(const Curves& curves) {
   const Formula formula{"overhead F0", "", {{"k0", -1, 1}}, {{0.5}}};
   const Fit fit = fit_formula<1>(formula, points_of(curves, 0), [](const auto* p, const CurvePoint& point) {
@@ -60,8 +61,8 @@ DirectModel fit_both(const Curves& curves) {
   return {parameter_value(fit, "k0"), parameter_value(fit, "k1")};
 }
 
-// The whole model of a fitted F₀ and a formula of 1 − τ: escape(p, Direct) with parameters p of the ranges
-// given.
+// Fits a formula of 1 − τ to the totals and joins it to a fitted F₀.
+// escape: callable as escape(p, Direct) with N parameters p in the ranges `parameters`.
 template <int N, class Escape>
 Prediction fit_escape(const Curves& curves, DirectModel direct, const std::vector<ParameterRange>& parameters,
                       const std::vector<std::vector<double>>& starts, Escape escape) {
@@ -112,51 +113,32 @@ Prediction with_quotient(const Curves& curves, DirectModel direct) {
                        });
 }
 
-struct PublishedConstants {
-  double k, e, a, b;
-
-  explicit PublishedConstants(const Curves& curves) {
-    const Fit direct = fit_direct(points_of(curves, 0));
-    const Fit first = fit_first_bounce(points_of(curves, 1));
-    k = parameter_value(direct, "k");
-    e = parameter_value(direct, "e");
-    a = parameter_value(first, "A");
-    b = parameter_value(first, "B");
-  }
-};
-
-Prediction published(const Curves& curves) {
-  return [c = PublishedConstants(curves)](double ao, double, double albedo) {
-    const double direct = direct_factor(ao, c.k, c.e);
-    const double first = first_bounce_factor(ao, c.a, c.b);
-    return direct + albedo * first / (1 - albedo * (1 - first / (1 - direct)));
-  };
+Mayaux2018Model fit_formulas(const Curves& curves) {
+  const Fit direct = fit_direct(points_of(curves, 0));
+  const Fit first = fit_first_bounce(points_of(curves, 1));
+  return {parameter_value(direct, "k"), parameter_value(direct, "e"), parameter_value(first, "A"),
+          parameter_value(first, "B")};
 }
 
-Prediction guarded(const Curves& curves) {
-  return [c = PublishedConstants(curves)](double ao, double, double albedo) {
-    const double direct = std::min(direct_factor(ao, c.k, c.e), 1.0);
-    const double blocked = 1 - direct;
-    const double first = first_bounce_factor(ao, c.a, c.b);
-    return total_factor(direct, blocked, first < blocked ? std::max(first / blocked, kSmallestEscape) : 1.0,
-                        albedo);
-  };
+template <class Model>
+Prediction total_of(const Model& model) {
+  return [model](double ao, double, double albedo) { return model.total(ao, albedo); };
 }
 
-Prediction jimenez_of(const std::array<double, 6>& p, bool over_ao) {
-  return [p, over_ao](double ao, double visibility, double albedo) {
-    const double v = over_ao ? ao : visibility;
-    return std::max(v, jimenez_cubic(v, albedo, p.data()));
+Prediction jimenez_of(const JimenezModel& model, bool over_ao) {
+  return [model, over_ao](double ao, double visibility, double albedo) {
+    return model.total(over_ao ? ao : visibility, albedo);
   };
 }
 
 Prediction jimenez_refit(const Curves& curves, bool over_ao) {
   const std::vector<double> albedos = fit_albedos();
-  const Fit fit = fit_jimenez(over_ao ? totals_of(curves) : visibility_points(curves, albedos, Weights::none),
-                              static_cast<int>(albedos.size()));
-  std::array<double, 6> p;
-  for (size_t i = 0; i < 6; ++i) p[i] = fit.parameters[i].value;
-  return jimenez_of(p, over_ao);
+  const Fit fit =
+      fit_jimenez(over_ao ? totals_of(curves) : visibility_points(curves, albedos, Weights::kNone),
+                  static_cast<int>(albedos.size()));
+  JimenezModel model;
+  for (size_t i = 0; i < 6; ++i) model.parameters[i] = fit.parameters[i].value;
+  return jimenez_of(model, over_ao);
 }
 
 double populated_bins(const Curves& curves) {
@@ -173,8 +155,9 @@ Curves all_but(std::vector<Curves> sets, size_t left_out) {
 
 const std::vector<Candidate>& candidates() {
   static const std::vector<Candidate> all = {
-      {"published", "k, e; A, B", 4, published},
-      {"published, cut", "the same, F0 <= 1 and 0 <= tau <= 1", 4, guarded},
+      {"published", "k, e; A, B", 4, [](const Curves& curves) { return total_of(fit_formulas(curves)); }},
+      {"published, cut", "the same, F0 <= 1 and 0 <= tau <= 1", 4,
+       [](const Curves& curves) { return total_of(GuardedModel{fit_formulas(curves)}); }},
       {"line, power", "s = k; 1-tau = F0^n", 2,
        [](const Curves& curves) { return with_power(curves, fit_line(curves)); }},
       {"bounded, power", "s = k0..k1; 1-tau = F0^n", 3,
@@ -189,10 +172,8 @@ const std::vector<Candidate>& candidates() {
        [](const Curves& curves) { return with_quotient(curves, fit_overhead(curves)); }},
       {"bounded", "s = k0..k1; 1-tau = q(1 - d(1-F0)/(1+3F0))", 4,
        [](const Curves& curves) { return with_quotient(curves, fit_both(curves)); }},
-      {"Jimenez 2016", "their constants, V = E0/pi", 0,
-       [](const Curves&) { return jimenez_of(kJimenezConstants, false); }},
-      {"Jimenez 2016, ao", "their constants, V = a", 0,
-       [](const Curves&) { return jimenez_of(kJimenezConstants, true); }},
+      {"Jimenez 2016", "their constants, V = E0/pi", 0, [](const Curves&) { return jimenez_of({}, false); }},
+      {"Jimenez 2016, ao", "their constants, V = a", 0, [](const Curves&) { return jimenez_of({}, true); }},
       {"Jimenez, refit", "V = E0/pi", 6, [](const Curves& curves) { return jimenez_refit(curves, false); }},
       {"Jimenez, refit, ao", "V = a", 6, [](const Curves& curves) { return jimenez_refit(curves, true); }},
   };

@@ -10,18 +10,19 @@
 
 #include "core/constants.h"
 #include "core/error.h"
+#include "transport/series.h"
 
 namespace hemibake {
 namespace {
 
-// Smallest standard error of a bin's mean of E/π that is believed. A bin of flat ground has no spread at all,
-// and would outweigh every other without limit; the rays of a bake leave about this much.
+// Smallest standard error of a bin's mean of E/π: the noise of a bake's rays. Flat ground has no spread, and
+// would outweigh every other bin without limit.
 constexpr double kSmallestStandardError = 1e-4;
 
-constexpr std::array kAbscissas = {std::pair{Abscissa::center, "center"},
-                                   std::pair{Abscissa::published, "published"}};
-constexpr std::array kWeights = {std::pair{Weights::none, "none"}, std::pair{Weights::count, "count"},
-                                 std::pair{Weights::standard_error, "stderr"}};
+constexpr std::array kAbscissas = {std::pair{Abscissa::kCenter, "center"},
+                                   std::pair{Abscissa::kMayaux2018, "published"}};
+constexpr std::array kWeights = {std::pair{Weights::kNone, "none"}, std::pair{Weights::kCount, "count"},
+                                 std::pair{Weights::kStandardError, "stderr"}};
 
 template <class Table, class Value>
 std::string name_of(const Table& table, Value value) {
@@ -43,11 +44,11 @@ auto value_of(const Table& table, const std::string& text) {
 
 double raw_weight(double count, double stddev_over_pi, Weights weights) {
   switch (weights) {
-    case Weights::none:
+    case Weights::kNone:
       return 1;
-    case Weights::count:
+    case Weights::kCount:
       return count;
-    case Weights::standard_error:
+    case Weights::kStandardError:
       return 1 / std::max(stddev_over_pi * stddev_over_pi / count,
                           kSmallestStandardError * kSmallestStandardError);
   }
@@ -60,30 +61,27 @@ struct BinPosition {
 };
 
 std::vector<BinPosition> usable_bins(const Curves& curves, Abscissa abscissa, Weights weights) {
-  if (weights != Weights::none && !curves.has_counts) {
+  if (weights != Weights::kNone && !curves.has_counts) {
     throw InputError(fmt::format(
         "curves without counts, expected columns count and E00_stddev for --weights {}", to_string(weights)));
   }
-  if (abscissa == Abscissa::published && curves.bins.size() < 2) {
+  if (abscissa == Abscissa::kMayaux2018 && curves.bins.size() < 2) {
     throw InputError("1 bin, expected at least 2 for --abscissa published");
   }
   std::vector<BinPosition> usable;
   const double last = static_cast<double>(curves.bins.size()) - 1;
   for (size_t j = 0; j < curves.bins.size(); ++j) {
     const CurveBin& bin = curves.bins[j];
-    if (bin.count < (weights == Weights::standard_error ? 2 : 1)) continue;
+    if (bin.count < (weights == Weights::kStandardError ? 2 : 1)) continue;
     usable.push_back(
-        {&bin, abscissa == Abscissa::center ? bin_center(bin) : static_cast<double>(j + 1) / last});
+        {&bin, abscissa == Abscissa::kCenter ? bin_center(bin) : static_cast<double>(j + 1) / last});
   }
   return usable;
 }
 
 CurvePoint total_point(const CurveBin& bin, double abscissa, double albedo, Weights weights) {
-  double stddev = 0, power = 1;
-  for (const BounceStatistics& bounce : bin.bounces) {
-    stddev += power * bounce.stddev;
-    power *= albedo;
-  }
+  const double stddev = sum_bounces(
+      bin.bounces.size(), [&](size_t b) { return bin.bounces[b].stddev; }, albedo);
   return {abscissa, total_over_pi(bin, albedo), raw_weight(bin.count, stddev / kPi, weights), albedo};
 }
 
@@ -105,23 +103,6 @@ std::vector<CurvePoint> curve_points(const Curves& curves, int bounce, Abscissa 
   return points;
 }
 
-double total_over_pi(const CurveBin& bin, double albedo) {
-  double sum = 0, power = 1, at_albedo_one = 0;
-  for (const BounceStatistics& bounce : bin.bounces) {
-    sum += power * bounce.mean;
-    at_albedo_one += bounce.mean;
-    power *= albedo;
-  }
-  const size_t count = bin.bounces.size();
-  if (count < 3 || bin.bounces[count - 1].mean >= bin.bounces[count - 2].mean) return sum / kPi;
-  // Not more than the energy not yet seen, which a slow bin's last two bounces do not tell well: with ratio r
-  // what follows the last bounce E is E r/(1 − r) at albedo 1.
-  const double last = bin.bounces[count - 1].mean, left = std::max(0.0, kPi - at_albedo_one);
-  const double ratio = std::min(last / bin.bounces[count - 2].mean, left / (left + last));
-  sum += power * last * ratio / (1 - albedo * ratio);
-  return sum / kPi;
-}
-
 std::vector<CurvePoint> total_points(const Curves& curves, std::span<const double> albedos, Abscissa abscissa,
                                      Weights weights) {
   std::vector<CurvePoint> points;
@@ -135,7 +116,7 @@ std::vector<CurvePoint> total_points(const Curves& curves, std::span<const doubl
 std::vector<CurvePoint> visibility_points(const Curves& curves, std::span<const double> albedos,
                                           Weights weights) {
   std::vector<CurvePoint> points;
-  for (const auto& [bin, ao] : usable_bins(curves, Abscissa::center, weights)) {
+  for (const auto& [bin, ao] : usable_bins(curves, Abscissa::kCenter, weights)) {
     const double visibility = bin->bounces[0].mean / kPi;
     for (const double albedo : albedos) points.push_back(total_point(*bin, visibility, albedo, weights));
   }

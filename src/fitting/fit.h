@@ -1,4 +1,4 @@
-// What a fit is: input points, and what came out. No Ceres here.
+// Declares the points that a fit takes and the result that it gives. No Ceres here.
 #pragma once
 
 #include <optional>
@@ -10,18 +10,17 @@
 
 namespace hemibake {
 
-// Where on the AO axis the mean of a bin stands.
+// Selects the place of a bin on the AO axis.
 enum class Abscissa {
-  center,     // the middle of the bin
-  published,  // (j + 1)/(bins − 1) for bin j from 0: what the constants of 2018 were fitted with, one bin too
-              // far
+  kCenter,      // middle of the bin
+  kMayaux2018,  // (j + 1)/(bins − 1) for bin j from 0: that of the constants of 2018, one bin too far
 };
 
-// How much a bin counts.
+// Selects the weight of a bin.
 enum class Weights {
-  none,            // every bin the same
-  count,           // by its number of texels
-  standard_error,  // by the inverse variance of its mean, count/stddev²
+  kNone,           // the same for every bin
+  kCount,          // its number of texels
+  kStandardError,  // the inverse variance of its mean, count/stddev²
 };
 
 struct CurvePoint {
@@ -31,30 +30,26 @@ struct CurvePoint {
   double albedo = 1;  // ρ, where the value depends on it
 };
 
-// The points of one bounce, in bin order; empty bins are left out, with Weights::standard_error also bins of
-// fewer than two texels. bounce: 0..bounce_count − 1. Throws InputError where the weights need counts that
-// `curves` lacks.
+// Returns the points of one bounce in bin order, without empty bins.
+// bounce: 0..bounce_count − 1.
+// weights: with kStandardError, bins of fewer than two texels are left out too.
+// Throws InputError where the weights need counts that `curves` lacks.
 std::vector<CurvePoint> curve_points(const Curves& curves, int bounce, Abscissa abscissa, Weights weights);
 
-// E/π of all bounces of one bin at albedo `albedo` (0..1): Σ ρᵇ E_b/π, the bounces after the last stored one
-// as a geometric series with the ratio of the last two, or with a lower one where that would add up to more
-// than π at albedo 1.
-double total_over_pi(const CurveBin& bin, double albedo);
-
-// The points (α, ρ, total_over_pi), for each usable bin one after another for each of `albedos`. The spread
-// of a total is at most the sum of the spreads of its bounces: that stands for it with
-// Weights::standard_error.
+// Returns the points (α, ρ, total_over_pi), bin by bin and within a bin in the order of `albedos`.
+// albedos: ρ, each 0..1.
+// weights: with kStandardError, the spread of a total is its upper bound, the sum of its bounces' spreads.
 std::vector<CurvePoint> total_points(const Curves& curves, std::span<const double> albedos, Abscissa abscissa,
                                      Weights weights);
 
-// The same with the cosine-weighted visible fraction E₀/π of each bin in place of α.
+// Returns the points (E₀/π, ρ, total_over_pi): total_points over the cosine-weighted visible fraction.
 std::vector<CurvePoint> visibility_points(const Curves& curves, std::span<const double> albedos,
                                           Weights weights);
 
 struct FitParameter {
   std::string name;
   double value = 0;
-  // Square root of the diagonal of the covariance; none where the parameter sits on its bound.
+  // Square root of the covariance's diagonal; none for a parameter on its bound.
   std::optional<double> standard_error;
 };
 
@@ -62,31 +57,30 @@ struct Fit {
   std::string model;
   std::string formula;
   std::vector<FitParameter> parameters;
-  // Parameters × parameters, rows one after another: s²(JᵀWJ)⁻¹ with s² = Σ w r²/(points − parameters). True
-  // to the spread of the parameters where the errors of the points are independent with variances
-  // proportional to 1/w.
+  // s²(JᵀWJ)⁻¹ with s² = Σ w r²/(points − parameters); parameters × parameters, row by row. Holds for
+  // independent errors of variances proportional to 1/w.
   std::vector<double> covariance;
   double rms = 0;              // of the residuals, unweighted, in E/π
   double max_error = 0;        // largest residual, in E/π
   int points = 0;              // residuals
   std::optional<double> aicc;  // Akaike's criterion, small-sample form; none where points <= parameters + 2
-  Abscissa abscissa = Abscissa::center;
-  Weights weights = Weights::none;
+  Abscissa abscissa = Abscissa::kCenter;
+  Weights weights = Weights::kNone;
 };
 
-// A fit and the name it has in FIT.json.
+// Pairs a fit with its name in FIT.json.
 struct NamedFit {
   std::string name;
   Fit fit;
 };
 
-// Value of the parameter called `name`; a bug if there is none.
+// Returns the value of the parameter called `name`. Throws std::logic_error where there is none.
 double parameter_value(const Fit& fit, const std::string& name);
 
 std::string to_string(Abscissa abscissa);  // center, published
 std::string to_string(Weights weights);    // none, count, stderr
 
-// The inverses. Throw InputError for any other text.
+// Parse the texts above. Throw InputError for any other.
 Abscissa abscissa_from_string(const std::string& text);
 Weights weights_from_string(const std::string& text);
 

@@ -1,28 +1,34 @@
-// The models that a FIT.json holds the constants of.
+// Makes models of the constants that fits hold.
 #pragma once
 
-#include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "io/fit_file.h"
+#include "fitting/fit.h"
 #include "model/model.h"
 
 namespace hemibake {
 
-// True where `file` has a fit called `name`.
-bool has_fit(const FitFile& file, std::string_view name);
+// Names a model that fits can hold, by the fits that it takes.
+enum class ModelKind {
+  kBounded,     // bounded_F0 and bounded_tau
+  kMayaux2018,  // F0 and F1; guarded
+};
 
-// From bounded_F0 and bounded_tau, as `hemibake fit --model bounded` writes them; from F0 and F1 of `--model
-// published`. Throws InputError naming `path` where a fit or a parameter is missing, or a value is outside
-// the range in which every step of the formulas is finite in float.
-BoundedModel bounded_model(const FitFile& file, const std::filesystem::path& path);
-GuardedModel guarded_model(const FitFile& file, const std::filesystem::path& path);
+// Parses `bounded` or `published`. Throws InputError for any other text.
+ModelKind model_kind_from_string(std::string_view text);
 
-// Where the constants come from, for the head of a shader text: formula and parameters with their errors,
-// input and command.
-std::vector<std::string> bounded_model_origin(const FitFile& file, const std::filesystem::path& path);
-std::vector<std::string> guarded_model_origin(const FitFile& file, const std::filesystem::path& path);
+// Returns whether `fits` hold every fit of the model.
+bool has_model(std::span<const NamedFit> fits, ModelKind kind);
+
+// Returns the model with the constants of `fits`. Throws InputError where a fit or a parameter is missing, or
+// a value is outside the range in which every step of the formulas is finite in float.
+ShaderModel fitted_model(std::span<const NamedFit> fits, ModelKind kind);
+
+// Returns a line for each fit of the model: formula, constants with their errors, residuals. Throws
+// InputError where a fit is missing.
+std::vector<std::string> describe_fits(std::span<const NamedFit> fits, ModelKind kind);
 
 }  // namespace hemibake

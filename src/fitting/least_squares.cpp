@@ -15,16 +15,15 @@ namespace {
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr int kMaxSteps = 1000;
-// Of the starts a formula offers, by cost: the first is not always in the right valley.
+// Starts of least cost that are followed: the best one is not always in the right valley.
 constexpr size_t kStartsTried = 3;
 
-// Ratio of the smallest to the largest singular value of the Jacobian, its columns scaled to length 1, below
-// which the parameters are not determined: its square, the condition of JᵀJ, is then at the rounding of a
-// double.
+// Least ratio of the singular values of the column-scaled Jacobian for determined parameters: its square, the
+// condition of JᵀJ, reaches the rounding of a double.
 constexpr double kSmallestConditioning = 1e-7;
 
-// A parameter that, changed by its own size (or by 1), moves the curve by less than this (rms, E/π) is not
-// determined: the values themselves carry rounding of this order.
+// Least effect (rms, E/π) on the curve of changing a determined parameter by its own size or by 1: the
+// rounding of the values.
 constexpr double kSmallestEffect = 1e-12;
 
 struct Evaluation {
@@ -40,7 +39,7 @@ Evaluation evaluate(const ceres::CostFunction& cost, const std::vector<double>& 
   return result;
 }
 
-// The starts of least cost, best first.
+// Returns the starts of least cost, best first.
 std::vector<std::vector<double>> best_starts(const Formula& formula, const ceres::CostFunction& cost) {
   std::vector<std::pair<double, std::vector<double>>> ranked;
   for (const std::vector<double>& start : formula.starts) {
@@ -86,8 +85,8 @@ Minimum solve(const Formula& formula, ceres::CostFunction* cost, std::vector<dou
           summary.termination_type == ceres::CONVERGENCE ? "" : summary.message};
 }
 
-// The lowest of the minima that the best starts lead to. One that did not converge counts too: lower than all
-// that did, it says that they are not the minimum.
+// Returns the lowest minimum that the best starts lead to. An unconverged one takes part: lower than all
+// others, it proves that they are not the minimum.
 std::vector<double> lowest_minimum(const Formula& formula, ceres::CostFunction* cost) {
   Minimum lowest;
   for (const std::vector<double>& start : best_starts(formula, *cost)) {
@@ -104,7 +103,7 @@ bool on_bound(const ParameterRange& range, double value) {
   return value <= range.lower || value >= range.upper;
 }
 
-// s²(JᵀJ)⁻¹ over the parameters that are free; the rows and columns of those on a bound are 0.
+// Returns s²(JᵀJ)⁻¹ over the free parameters; rows and columns of those on a bound are 0.
 Matrix covariance(const Formula& formula, const Evaluation& at, const std::vector<double>& parameters,
                   const std::vector<Eigen::Index>& free, double observations) {
   const Eigen::Index all = at.jacobian.cols();
@@ -134,8 +133,8 @@ Matrix covariance(const Formula& formula, const Evaluation& at, const std::vecto
   return result;
 }
 
-// The criterion of weighted points: the likelihood of a point of weight w has the factor √w. points: each
-// observation counts once, however many points it has.
+// Returns Akaike's criterion of weighted points: the likelihood of a point of weight w has the factor √w.
+// observations: count once each, however many points they have.
 std::optional<double> weighted_aic(const Evaluation& at, std::span<const CurvePoint> points,
                                    double observations) {
   const double count = static_cast<double>(points.size());

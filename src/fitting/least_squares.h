@@ -1,5 +1,5 @@
-// Bounded nonlinear least squares of a formula to curve points, by Ceres. Only for the .cpp files of this
-// folder.
+// Fits a formula to curve points by bounded nonlinear least squares (Ceres). Only for this folder's .cpp
+// files.
 #pragma once
 
 #include <ceres/ceres.h>
@@ -21,16 +21,16 @@ struct ParameterRange {
   double upper = HUGE_VAL;
 };
 
-// A formula as the fit sees it; its values come from a cost function beside it.
+// Describes a formula to the minimiser; a cost function beside it gives its values.
 struct Formula {
   std::string model;  // as in FIT.json
   std::string text;   // the formula for a human
   std::vector<ParameterRange> parameters;
   std::vector<std::vector<double>> starts;  // parameter sets to begin from; those of least cost are taken
-  int points_per_observation = 1;           // points that share one error (fit.h, "observation")
+  int points_per_observation = 1;           // points that share one error: a bin at several albedos
 };
 
-// Residuals √w·(formula − value) of `points`, differentiated by Ceres.
+// Gives Ceres the residuals √w·(formula − value) of `points`.
 // value: callable as T value(const T* parameters, const CurvePoint&) for T double and a Jet; N: parameters.
 template <int N, class Value>
 class CurveResiduals {
@@ -50,9 +50,10 @@ class CurveResiduals {
   Value value_;
 };
 
-// Minimises ½ Σ residual² within the bounds. Throws InputError where there are not more points than
-// parameters, CheckError where the minimisation does not converge or the points do not determine every
-// parameter. cost: n × N residuals as above, over `points`.
+// Minimises ½ Σ residual² within the bounds.
+// cost: the residuals above, over `points`.
+// Throws InputError for fewer observations than parameters + 1, CheckError where the minimisation does not
+// converge or the points do not determine every parameter.
 Fit minimize(const Formula& formula, std::span<const CurvePoint> points,
              std::unique_ptr<ceres::CostFunction> cost);
 
@@ -64,12 +65,11 @@ Fit fit_formula(const Formula& formula, std::span<const CurvePoint> points, Valu
                   std::make_unique<Cost>(new Residuals(points, value), static_cast<int>(points.size())));
 }
 
-// Akaike's criterion for least squares: n ln(mean square) + 2K + 2K(K+1)/(n−K−1), K = parameters + 1 for the
-// variance (Burnham & Anderson, "Model Selection and Multimodel Inference", 2002, eq. 7.3). None where n is
-// too small.
+// Returns Akaike's criterion for least squares, n ln(mean square) + 2K + 2K(K+1)/(n−K−1), K = parameters + 1
+// (Burnham & Anderson, "Model Selection and Multimodel Inference", 2002, eq. 7.3). None where n is too small.
 std::optional<double> small_sample_aic(double mean_square, double observations, int parameters);
 
-// The factor s that minimises Σ w (s·shape(α) − value)²; 0 where the shape vanishes at every point.
+// Returns the factor s that minimises Σ w (s·shape(α) − value)²; 0 where the shape vanishes at every point.
 template <class Shape>
 double best_scale(std::span<const CurvePoint> points, Shape shape) {
   double product = 0, square = 0;

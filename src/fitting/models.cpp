@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "fitting/bounded.h"
-#include "fitting/published.h"
+#include "fitting/mayaux2018.h"
 
 namespace hemibake {
 namespace {
@@ -17,7 +17,7 @@ void expect_bounces(const Curves& curves, int count, const char* model) {
                                curves.bounce_count, count, model));
 }
 
-std::vector<NamedFit> fit_published(const Curves& curves, Abscissa abscissa, Weights weights) {
+std::vector<NamedFit> fit_mayaux2018(const Curves& curves, Abscissa abscissa, Weights weights) {
   expect_bounces(curves, 2, "published");
   return {{"F0", fit_direct(curve_points(curves, 0, abscissa, weights))},
           {"F1", fit_first_bounce(curve_points(curves, 1, abscissa, weights))}};
@@ -42,7 +42,7 @@ std::vector<NamedFit> fit_bounces(const Curves& curves, Abscissa abscissa, Weigh
   return fits;
 }
 
-std::vector<NamedFit> fit_jimenez_both(const Curves& curves, Abscissa abscissa, Weights weights) {
+std::vector<NamedFit> fit_jimenez_twice(const Curves& curves, Abscissa abscissa, Weights weights) {
   expect_bounces(curves, 2, "jimenez");
   const std::vector<double> albedos = fit_albedos();
   const int count = static_cast<int>(albedos.size());
@@ -54,11 +54,11 @@ std::vector<NamedFit> fit_jimenez_both(const Curves& curves, Abscissa abscissa, 
 
 const std::vector<FitModel>& fit_models() {
   static const std::vector<FitModel> models = {
-      {"published", "F0 and F1 of the notes of 2018", fit_published},
+      {"published", "F0 and F1 of the notes of 2018", fit_mayaux2018},
       {"bounded", "F0 and tau that stay within 0..1", fit_bounded},
       {"bounces", "each bounce on its own", fit_bounces},
       {"jimenez", "their cubic over the cosine-weighted and over the uniform visible fraction",
-       fit_jimenez_both},
+       fit_jimenez_twice},
   };
   return models;
 }

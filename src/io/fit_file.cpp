@@ -93,6 +93,16 @@ FitFile fits_from_json(const Json& json, const std::filesystem::path& path) {
   return file;
 }
 
+std::vector<std::string> model_origin(const FitFile& file, ModelKind kind) {
+  std::vector<std::string> lines = describe_fits(file.fits, kind);
+  lines.insert(lines.begin(),
+               "Ambient occlusion with all bounces of light, by hemibake " HEMIBAKE_VERSION ".");
+  for (const char* name : {"input", "input_sha256", "command"})
+    if (file.provenance.contains(name) && file.provenance[name].is_string())
+      lines.push_back(fmt::format("{}: {}", name, file.provenance[name].get<std::string>()));
+  return lines;
+}
+
 FitFile read_fits(const std::filesystem::path& path) { return fits_from_json(read_json(path), path); }
 
 void write_fits(const std::filesystem::path& path, const FitFile& file) {

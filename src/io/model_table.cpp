@@ -27,7 +27,8 @@ Table sample(const Model& model) {
 
 }  // namespace
 
-Table table_from_model(const BoundedModel& model) { return sample(model); }
-Table table_from_model(const GuardedModel& model) { return sample(model); }
+Table table_from_model(const ShaderModel& model) {
+  return std::visit([](const auto& m) { return sample(m); }, model);
+}
 
 }  // namespace hemibake

@@ -1,4 +1,4 @@
-// Tables of a model, for spreadsheets, look-up textures and plots.
+// Writes a model as a table, for spreadsheets, look-up textures and plots.
 #pragma once
 
 #include "io/table_io.h"
@@ -6,9 +6,8 @@
 
 namespace hemibake {
 
-// Samples the model at ao = 0, 0.01, … 1. Columns: ao, direct, first_bounce, bounce_ratio, and total_0.0,
-// total_0.1, … total_1.0 for the albedo in the name. All values are within 0..1.
-Table table_from_model(const BoundedModel& model);
-Table table_from_model(const GuardedModel& model);
+// Returns 101 rows, ao = 0, 0.01, … 1; columns ao, direct, first_bounce, bounce_ratio, and total_0.0,
+// total_0.1, … total_1.0 for the albedo in the name. All values are within 0..1 (model/model.h).
+Table table_from_model(const ShaderModel& model);
 
 }  // namespace hemibake

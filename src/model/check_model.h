@@ -1,4 +1,4 @@
-// What must hold of a fitted model for use in a shader.
+// Checks that a fitted model is fit for a shader.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace hemibake {
 
-// Evaluates model.direct, .bounce_ratio and .total over α × ρ, ends included, in float: everything finite, F₀
-// and the total inside 0..1, τ inside 0..1, and the total 1 at ρ = 1.
+// Evaluates F₀, τ and the total in float over 1001 α × 21 ρ, ends included: finite, in 0..1, total 1 at ρ
+// = 1.
 template <class Model>
 Checks check_model(const Model& model, double tolerance) {
   constexpr int kSteps = 1000, kAlbedoSteps = 20;

@@ -1,6 +1,4 @@
-// The formulas of the curves, F_b(α) = E_b/π at albedo 1, as templates: float and double for evaluation
-// (model/), Ceres' derivative-carrying numbers for fitting (fitting/). They are here, in the lowest folder
-// that both include, so that a fitted formula and an evaluated one cannot differ.
+// Defines the formulas of the curves, F_b(α) = E_b/π at albedo 1, once for evaluation and fitting.
 //
 // X: the type of α (float or double); T: the type of the parameters (X, or a Ceres Jet over X).
 //
@@ -12,20 +10,20 @@
 
 namespace hemibake {
 
-// 1 − α, and 0 where α exceeds 1: the published abscissa runs to 100/99.
+// Returns max(1 − α, 0): the abscissa of 2018 runs to 100/99.
 template <class X>
 X complement(X ao) {
   return ao < X(1) ? X(1) - ao : X(0);
 }
 
-// F₀(α) = α(1 + k(1−α)^e), notes eq. 7 with k = ½, e = ¾. Below 1 everywhere where e >= 1 and 0 <= k <= 1.
+// Returns F₀(α) = α(1 + k(1−α)^e), notes eq. 7 with k = ½, e = ¾. At most 1 for e >= 1, 0 <= k <= 1.
 template <class T, class X>
 T direct_factor(X ao, const T& k, const T& e) {
   using std::pow;
   return ao * (T(1) + k * pow(complement(ao), e));
 }
 
-// F₁(α) = A α (1−α)^1.5 exp(−B α^¼), notes eq. 11.
+// Returns F₁(α) = A α (1−α)^1.5 exp(−B α^¼), notes eq. 11.
 template <class T, class X>
 T first_bounce_factor(X ao, const T& a, const T& b) {
   using std::exp;
@@ -34,8 +32,8 @@ T first_bounce_factor(X ao, const T& a, const T& b) {
   return ao * rest * sqrt(rest) * a * exp(-b * sqrt(sqrt(ao)));
 }
 
-// F_b(α) = A α (1−α)^1.5 exp(−B α^C), notes, "Summing the Curves": one set of A, B, C for each bounce b >= 1.
-// α > 0.
+// Returns F_b(α) = A α (1−α)^1.5 exp(−B α^C), notes, "Summing the Curves"; α > 0.
+// a, b, c: one set for each bounce b >= 1.
 template <class T, class X>
 T bounce_factor(X ao, const T& a, const T& b, const T& c) {
   using std::exp;
@@ -45,30 +43,29 @@ T bounce_factor(X ao, const T& a, const T& b, const T& c) {
   return ao * rest * sqrt(rest) * a * exp(-b * pow(ao, c));
 }
 
-// The bounded model (fits/README.md says how it was chosen): F₀ = α(1 + (1−α) s(α)). What a surface can let
-// in lies between α² (s = −1: all the visible sky along the horizon) and α(2−α) (s = 1: all of it overhead);
-// s = 0 is plain AO. With s = k0 + (k1 − k0) α² every k0 and k1 in −1..1 keeps F₀ between these two, rising
-// from 0 to 1.
+// Returns F₀ = α(1 + (1−α) s(α)) of the bounded model, s = k0 + (k1 − k0) α². Lies between α² (s = −1, the
+// visible sky along the horizon) and α(2−α) (s = 1, overhead), and rises from 0 to 1.
+// k0, k1: −1..1; both 0 is plain AO.
 template <class T, class X>
 T bounded_direct_factor(X ao, const T& k0, const T& k1) {
   return ao * (T(1) + (X(1) - ao) * (k0 + (k1 - k0) * (ao * ao)));
 }
 
-// 1 − F₀ of the above, without the cancellation near α = 1.
+// Returns 1 − bounded_direct_factor without cancellation near α = 1.
 template <class T, class X>
 T bounded_blocked_factor(X ao, const T& k0, const T& k1) {
   return (X(1) - ao) * (T(1) - ao * (k0 + (k1 - k0) * (ao * ao)));
 }
 
-// 1 − τ of the bounded model, the share of the light under way that each bounce sends out to the sky:
-// q(1 − d(1−F₀)/(1+3F₀)), which rises from q(1−d) in the dark to q in the open. q in (0, 1], d in [0, 1).
-// direct: F₀; blocked: 1 − F₀; 0..1.
+// Returns 1 − τ of the bounded model, the share of the light under way that each bounce sends out to the sky:
+// q(1 − d(1−F₀)/(1+3F₀)), which rises from q(1−d) in the dark to q in the open.
+// direct: F₀; blocked: 1 − F₀; 0..1. q: (0, 1]. d: [0, 1).
 template <class T, class X>
 T bounded_escape_share(X direct, X blocked, const T& q, const T& d) {
   return q * (T(1) - d * (blocked / (X(1) + X(3) * direct)));
 }
 
-// E/π over all bounces, notes eq. 10 with F₁ = (1 − F₀)(1 − τ), so that no light is lost at albedo 1:
+// Returns E/π over all bounces, notes eq. 10 with F₁ = (1 − F₀)(1 − τ) so that no light is lost at albedo 1:
 // F₀ + (1 − F₀) ρ(1−τ)/(1 − ρ + ρ(1−τ)).
 // direct: F₀; blocked: 1 − F₀; escape: 1 − τ; albedo: ρ; all 0..1, escape above 0 where albedo is 1.
 template <class T, class X>
@@ -77,12 +74,12 @@ T total_factor(X direct, X blocked, const T& escape, X albedo) {
   return direct + blocked * (out / (X(1) - albedo + out));
 }
 
-// 1 − τ of the published formulas is 0 at α = 0; this in its place keeps the total defined at ρ = 1.
+// Smallest 1 − τ of the guarded model: the formulas give 0 at α = 0, where the total at ρ = 1 would be 0/0.
 inline constexpr double kSmallestEscape = 1e-30;
 
-// Multi-bounce visibility as a cubic, Jimenez et al., "Practical Real-Time Strategies for Accurate Indirect
-// Occlusion", 2016, chapter 5, without its max(V, ·): ((aV + b)V + c)V with a = p0 ρ + p1, b = p2 ρ + p3, c =
-// p4 ρ + p5. visibility: E₀/π, the cosine-weighted visible fraction, not α.
+// Returns the cubic ((aV + b)V + c)V with a = p0 ρ + p1, b = p2 ρ + p3, c = p4 ρ + p5: Jimenez et al.,
+// "Practical Real-Time Strategies for Accurate Indirect Occlusion", 2016, chapter 5, without its max(V, ·).
+// visibility: V = E₀/π, the cosine-weighted visible fraction, not α.
 template <class T, class X>
 T jimenez_cubic(X visibility, X albedo, const T* p) {
   const T a = p[0] * albedo + p[1];
@@ -91,7 +88,7 @@ T jimenez_cubic(X visibility, X albedo, const T* p) {
   return ((a * visibility + b) * visibility + c) * visibility;
 }
 
-// Their constants, in that order.
+// Constants of Jimenez et al. 2016, p0..p5.
 inline constexpr std::array<double, 6> kJimenezConstants = {2.0404, -0.3324, -4.7951, 0.6417, 2.7552, 0.6903};
 
 }  // namespace hemibake

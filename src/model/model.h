@@ -1,6 +1,5 @@
-// The fitted models, evaluated in float or double as a shader would: irradiance relative to that of an open
-// surface (E/π under a sky of radiance 1), from ambient occlusion and albedo. Formulas:
-// model/closed_forms.h.
+// Evaluates fitted models in float or double as a shader would (formulas: model/closed_forms.h). Results are
+// irradiance relative to an open surface, E/π under a sky of radiance 1.
 //
 // Every model gives, for ao = α and albedo = ρ in 0..1, ends included:
 //   direct(α)        F₀, the light that comes straight from the sky
@@ -11,13 +10,14 @@
 
 #include <algorithm>
 #include <array>
+#include <variant>
 
 #include "model/closed_forms.h"
 
 namespace hemibake {
 
-// F₀, F₁ and the total lie in 0..1 and τ in [0, 1); F₀ and the total rise with α, the total with ρ too; F₀ +
-// F₁/(1 − τ) is 1.
+// Keeps F₀, F₁ and the total in 0..1 and τ in [0, 1). F₀ and the total rise with α, the total with ρ too;
+// F₀ + F₁/(1 − τ) = 1.
 struct BoundedModel {
   double k0 = 0.5;  // −1..1: where the visible sky stands, −1 along the horizon, 1 overhead. In the dark…
   double k1 = 1;    // −1..1: …and in the open
@@ -50,10 +50,8 @@ struct BoundedModel {
   }
 };
 
-// The model of the notes of 2018 as it stands, eq. 7, 9, 10, 11. With the published constants τ is below 0
-// from α = 0.7633 on, F₀ exceeds 1 from 0.949253 on, where τ has a pole, and the total has one above that at
-// every ρ below 1.
-struct PublishedModel {
+// Evaluates the model of the notes of 2018 unguarded, eq. 7, 9, 10, 11: it has poles (model/README.md).
+struct Mayaux2018Model {
   double k = 0.5;
   double e = 0.75;
   double a = 27.576937094210385;
@@ -77,19 +75,19 @@ struct PublishedModel {
   }
 };
 
-// The same with F₀ cut off at 1 and τ at 0 and 1: within 0..1 everywhere, equal to the published model
-// wherever that one is sound. What `export --model published` writes.
+// Cuts F₀ of the model of 2018 at 1 and its τ to 0..1: in 0..1 everywhere, unchanged where that model is
+// sound.
 struct GuardedModel {
-  PublishedModel published;
+  Mayaux2018Model formulas;
 
   template <class T>
   T direct(T ao) const {
-    return std::clamp(published.direct(ao), T(0), T(1));
+    return std::clamp(formulas.direct(ao), T(0), T(1));
   }
   template <class T>
   T escape(T ao) const {
     const T blocked = 1 - direct(ao);
-    const T first = published.first_bounce(ao);
+    const T first = formulas.first_bounce(ao);
     return first < blocked ? std::max(first / blocked, static_cast<T>(kSmallestEscape)) : T(1);
   }
   template <class T>
@@ -107,9 +105,11 @@ struct GuardedModel {
   }
 };
 
-// Jimenez et al. 2016 (closed_forms.h, jimenez_cubic), by default with their constants. No F₁ or τ: all
-// bounces at once. visibility: E₀/π, the cosine-weighted visible fraction; with α instead it is wrong by the
-// difference of the two.
+// Holds a model that textures, pictures and shader texts can be made with.
+using ShaderModel = std::variant<BoundedModel, GuardedModel>;
+
+// Evaluates max(V, jimenez_cubic), by default with the constants of Jimenez et al. 2016: all bounces at once.
+// visibility: V = E₀/π, the cosine-weighted visible fraction, not α.
 struct JimenezModel {
   std::array<double, 6> parameters = kJimenezConstants;
 

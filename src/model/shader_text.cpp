@@ -8,7 +8,7 @@
 namespace hemibake {
 namespace {
 
-// What the three languages spell differently; everything else of the text is the same in all of them.
+// Holds the parts of the text that differ between the three languages.
 struct Spelling {
   std::string_view open;             // before the functions
   std::string_view close;            // after them
@@ -37,17 +37,17 @@ constexpr Spelling kCpp{
 
 const Spelling& spelling(Language language) {
   switch (language) {
-    case Language::glsl:
+    case Language::kGlsl:
       return kGlsl;
-    case Language::hlsl:
+    case Language::kHlsl:
       return kHlsl;
-    case Language::cpp:
+    case Language::kCpp:
       return kCpp;
   }
   throw std::logic_error("an unknown shader language");
 }
 
-// Every digit a float can tell, with a decimal point.
+// Writes a float with all its digits and a decimal point.
 std::string literal(double value, const Spelling& s) {
   std::string text = fmt::format("{:.9g}", value);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
@@ -60,7 +60,9 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
   }
 }
 
-constexpr std::string_view kUsage = R"(//
+constexpr std::string_view kUsage =
+    R"(// SPDX-License-Identifier: MIT-0. Anyone may use this text without conditions.
+//
 // ao: ambient occlusion as the visible share of the hemisphere, every direction counting the same (not
 // cosine-weighted), 0..1. albedo: linear, 0..1. Results: irradiance relative to that of an open surface, 0..1; multiply
 // by the irradiance that the environment gives without occlusion.
@@ -185,19 +187,14 @@ std::string assemble(std::string_view model, const Constants& constants, Languag
 
 }  // namespace
 
-std::string shader_text(const BoundedModel& model, Language language,
-                        const std::vector<std::string>& origin) {
-  const Constants constants = {
-      {"$dark", model.k0}, {"$rise", model.k1 - model.k0}, {"$q", model.q}, {"$d", model.d}};
-  return assemble(kBounded, constants, language, origin);
-}
-
-std::string shader_text(const GuardedModel& model, Language language,
-                        const std::vector<std::string>& origin) {
-  const PublishedModel& p = model.published;
-  const Constants constants = {
-      {"$k", p.k}, {"$e", p.e}, {"$a", p.a}, {"$negative_b", -p.b}, {"#tiny", kSmallestEscape}};
-  return assemble(kGuarded, constants, language, origin);
+std::string shader_text(const ShaderModel& model, Language language, const std::vector<std::string>& origin) {
+  if (const BoundedModel* m = std::get_if<BoundedModel>(&model))
+    return assemble(kBounded, {{"$dark", m->k0}, {"$rise", m->k1 - m->k0}, {"$q", m->q}, {"$d", m->d}},
+                    language, origin);
+  const Mayaux2018Model& m = std::get<GuardedModel>(model).formulas;
+  return assemble(kGuarded,
+                  {{"$k", m.k}, {"$e", m.e}, {"$a", m.a}, {"$negative_b", -m.b}, {"#tiny", kSmallestEscape}},
+                  language, origin);
 }
 
 }  // namespace hemibake

@@ -41,7 +41,7 @@ Camera place_camera(const Surface& surface, const CameraOptions& options) {
   return camera;
 }
 
-// The ray from where it comes below the highest texel, inside the map.
+// Returns the point where the ray comes below the highest texel, inside the map.
 std::optional<glm::dvec3> enter_relief(const Surface& surface, double top, const glm::dvec3& eye,
                                        const glm::dvec3& direction) {
   if (direction.z >= 0) return std::nullopt;
@@ -83,8 +83,8 @@ ViewSample sample_at(const Surface& surface, const glm::dvec3& position) {
 
 }  // namespace
 
-View look_at(const Surface& surface, const CameraOptions& options) {
-  const HeightFieldRayCaster walk(surface);
+View trace_view(const Surface& surface, const CameraOptions& options) {
+  const HeightFieldRayCaster caster(surface);
   const Camera camera = place_camera(surface, options);
   const double top = height_range_m(surface) / surface.texel_size_m;
   View view{options.width, options.height, options.samples * options.samples, {}};
@@ -103,7 +103,7 @@ View look_at(const Surface& surface, const CameraOptions& options) {
               glm::normalize(camera.forward + camera.pixel * (across * camera.right + along * camera.down));
           const auto start = enter_relief(surface, top, camera.eye, direction);
           SurfacePoint hit;
-          if (start && walk.cast(*start, direction, hit) == RayOutcome::kHit)
+          if (start && caster.cast(*start, direction, hit) == RayOutcome::kHit)
             view.samples[next] = sample_at(surface, hit.position);
         }
     progress.advance((end - begin) * per_row);

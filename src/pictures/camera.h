@@ -1,5 +1,5 @@
-// A look at the surface itself: one camera ray after another against the triangles (reference/ray_caster.h),
-// kept, so that any number of pictures of the same view cost one trace.
+// Views the surface by a camera: rays against its triangles (reference/ray_caster.h), traced once for any
+// number of pictures of the view.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct CameraOptions {
   int samples = 3;                 // a side per pixel
 };
 
-// Where a camera ray meets the surface: shares of a facet's corners 1 and 2 (corner 0 has the rest).
+// Holds where a camera ray meets the surface: shares of a facet's corners 1 and 2 (corner 0 has the rest).
 struct ViewSample {
   static constexpr uint32_t kNothing = UINT32_MAX;
   uint32_t facet = kNothing;
@@ -34,12 +34,11 @@ struct View {
   std::vector<ViewSample> samples;  // pixel by pixel
 };
 
-// A wrapping map is seen repeated for ever; beyond an open map is nothing, and at its border the cut has the
-// colours of the border.
-View look_at(const Surface& surface, const CameraOptions& options);
+// Traces the camera rays. A wrapping map repeats for ever; beyond an open map is nothing, and the cut at its
+// border has the colours of the border.
+View trace_view(const Surface& surface, const CameraOptions& options);
 
-// The surface in the colours of its texels, interpolated over the triangles; `background` where there is
-// nothing.
+// Paints the surface in the colours of its texels, interpolated over the triangles, over `background`.
 Grid<glm::vec3> paint_view(const Surface& surface, const View& view, const Grid<glm::vec3>& texels,
                            const glm::vec3& background);
 

@@ -14,7 +14,7 @@ bool on_screen(const glm::dvec3& linear) {
          std::max({linear.x, linear.y, linear.z}) <= 1 + kRounding;
 }
 
-// Lightness and hue as asked; chroma as asked or as much as the screen has.
+// Returns the colour of a lightness and hue with the chroma asked for, or as much as the screen has.
 glm::dvec3 screen_color(double lightness, double chroma, double hue_rad) {
   const auto color = [&](double c) {
     return linear_from_oklab({lightness, c * std::cos(hue_rad), c * std::sin(hue_rad)});

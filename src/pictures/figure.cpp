@@ -25,7 +25,7 @@ Grid<T> magnified(const Grid<T>& values, int factor) {
   return large;
 }
 
-// What a pixel of a reduced picture covers of the rows (or columns) it is made of.
+// Holds the shares of the rows (or columns) that a pixel of a reduced picture covers.
 struct Cover {
   int first = 0;
   std::vector<double> shares;  // of first, first + 1, …; they sum to 1
@@ -45,7 +45,8 @@ std::vector<Cover> covers(int from, int to) {
   return result;
 }
 
-// Means over the area of each pixel. Sum: T in double.
+// Returns the means over the area of each pixel. OpenImageIO's resize counts whole texels or blurs: it shifts
+// them by up to half. Sum: T in double.
 template <class Sum, class T>
 Grid<T> reduced(const Grid<T>& values, int width, int height) {
   Grid<T> small(width, height);
@@ -80,7 +81,7 @@ void paste(Grid<glm::vec3>& picture, const Grid<glm::vec3>& part, int x, int y) 
                 picture.values.begin() + static_cast<std::ptrdiff_t>(picture.index(x, y + j)));
 }
 
-// A panel with its caption above.
+// Returns the width of a panel with its caption.
 int width_of(const Panel& panel) {
   return std::max(panel.shown.width, text_size(panel.caption, kLetters).width);
 }

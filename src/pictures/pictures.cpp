@@ -35,7 +35,7 @@ Grid<float> luminance_of(const Grid<glm::vec3>& linear) {
   return values;
 }
 
-// ± the round number that takes in kScaleShare of both.
+// Returns ± the round number that takes in kScaleShare of both.
 ColorScale difference_scale(const Grid<float>& a, const Grid<float>& b, const std::string& label) {
   std::vector<float> sizes;
   for (const Grid<float>* values : {&a, &b})
@@ -54,11 +54,11 @@ std::string error_caption(const char* name, const Grid<glm::vec3>& picture, cons
   return fmt::format("{}: mean {:+.1f} %, rms {}", name, 100 * error.bias, percent(error.rms));
 }
 
-// What stands in for a picture that cannot be made.
-std::string why_not(const ShadedScene& wall, bool needs_model) {
-  if (wall.bake.visible_fraction.empty()) return "the bake holds no ao";
-  if (wall.sky.empty()) return "the light of this sky needs normals, and the bake holds none";
-  if (needs_model && !wall.model) return "no model could be fitted";
+// Returns why a picture cannot be made, or nothing.
+std::string why_not(const ShadedScene& scene, bool needs_model) {
+  if (scene.bake.visible_fraction.empty()) return "the bake holds no ao";
+  if (scene.sky.empty()) return "the light of this sky needs normals, and the bake holds none";
+  if (needs_model && !scene.model) return "no model could be fitted";
   return "";
 }
 
@@ -70,18 +70,18 @@ struct NamedDifference {
 
 }  // namespace
 
-SceneImages make_scene_images(const ShadedScene& wall, const PictureOptions& options) {
+SceneImages make_scene_images(const ShadedScene& scene, const PictureOptions& options) {
   SceneImages shaded;
-  if (why_not(wall, false).empty()) shaded.ao_only = shade_ao_only(wall);
-  if (why_not(wall, true).empty()) shaded.model = shade_model(wall);
-  if (wall.truth) shaded.truth = shade_truth(wall);
+  if (why_not(scene, false).empty()) shaded.ao_only = shade_ao_only(scene);
+  if (why_not(scene, true).empty()) shaded.model = shade_model(scene);
+  if (scene.truth) shaded.truth = shade_truth(scene);
   const std::array pictures = {&std::as_const(shaded.ao_only), &std::as_const(shaded.model),
                                &std::as_const(shaded.truth)};
   shaded.exposure_ev = options.exposure_ev ? *options.exposure_ev : exposure_for(pictures);
   return shaded;
 }
 
-void add_triptych(const ShadedScene& wall, const SceneImages& shaded, Gallery& gallery) {
+void add_triptych(const ShadedScene& scene, const SceneImages& shaded, Gallery& gallery) {
   std::vector<Panel> row;
   const auto add = [&](const char* name, const Grid<glm::vec3>& picture, const std::string& caption,
                        const std::string& reason) {
@@ -90,8 +90,8 @@ void add_triptych(const ShadedScene& wall, const SceneImages& shaded, Gallery& g
     row.push_back(light_panel(picture, kPanelSide, shaded.exposure_ev,
                               fmt::format("{}, {:+.2f} EV", caption, shaded.exposure_ev)));
   };
-  add("ao_only", shaded.ao_only, "AO only", why_not(wall, false));
-  add("model", shaded.model, wall.model ? "model (" + wall.model->name + ")" : "", why_not(wall, true));
+  add("ao_only", shaded.ao_only, "AO only", why_not(scene, false));
+  add("model", shaded.model, scene.model ? "model (" + scene.model->name + ")" : "", why_not(scene, true));
   add("truth", shaded.truth, "ground truth", "the bake holds no irradiance");
   if (!row.empty()) gallery.add_figure("triptych", {&row, 1});
 }
@@ -119,12 +119,12 @@ void add_differences(const SceneImages& shaded, Gallery& gallery) {
   gallery.add_figure("differences", {&row, 1}, {&bar, 1});
 }
 
-void add_bounces(const ShadedScene& wall, const PictureOptions& options, Gallery& gallery) {
-  if (!wall.truth) return gallery.report_missing("bounces", "the bake holds no irradiance");
+void add_bounces(const ShadedScene& scene, const PictureOptions& options, Gallery& gallery) {
+  if (!scene.truth) return gallery.report_missing("bounces", "the bake holds no irradiance");
   std::vector<Panel> row;
-  const size_t count = std::min(wall.truth->bounces.size(), static_cast<size_t>(options.strip_bounces));
+  const size_t count = std::min(scene.truth->bounces.size(), static_cast<size_t>(options.strip_bounces));
   for (size_t b = 0; b < count; ++b) {
-    const Grid<glm::vec3> light = shade_bounce(wall, b);
+    const Grid<glm::vec3> light = shade_bounce(scene, b);
     const std::array pictures = {&light};
     const double exposure_ev = exposure_for(pictures);
     gallery.add_light(fmt::format("bounce_{:02}", b), light, exposure_ev);
@@ -136,15 +136,15 @@ void add_bounces(const ShadedScene& wall, const PictureOptions& options, Gallery
   gallery.add_figure("bounces", {&row, 1});
 }
 
-void add_saturation(const ShadedScene& wall, const SceneImages& shaded, Gallery& gallery) {
-  if (shaded.model.empty()) return gallery.report_missing("saturation", why_not(wall, true));
+void add_saturation(const ShadedScene& scene, const SceneImages& shaded, Gallery& gallery) {
+  if (shaded.model.empty()) return gallery.report_missing("saturation", why_not(scene, true));
   // ρ/(1−ρτ) of the notes, τ from 0 to 1, over its largest channel: the colour alone; and times 1−τ, which is
   // what is left of it where no light is lost.
   const int width = 3 * kPanelSide;
   constexpr int kBandHeight = 48;
   Grid<glm::vec3> hue(width, kBandHeight), light(width, kBandHeight);
   glm::dvec3 albedo(0);
-  for (size_t i = 0; i < shaded.model.size(); ++i) albedo += glm::dvec3(wall.albedo.at(i));
+  for (size_t i = 0; i < shaded.model.size(); ++i) albedo += glm::dvec3(scene.albedo.at(i));
   albedo /= static_cast<double>(shaded.model.size());
   for (int x = 0; x < width; ++x) {
     const double tau = (x + 0.5) / width;
@@ -156,9 +156,9 @@ void add_saturation(const ShadedScene& wall, const SceneImages& shaded, Gallery&
       light(x, y) = glm::vec3((1 - tau) * color);
     }
   }
-  const ShadingModel& model = *wall.model;
+  const ShadingModel& model = *scene.model;
   const auto panel = [&](const std::function<double(double, double)>& factor, const char* caption) {
-    return light_panel(shade_with(wall, factor), kPanelSide, shaded.exposure_ev, caption);
+    return light_panel(shade_with(scene, factor), kPanelSide, shaded.exposure_ev, caption);
   };
   const auto direct = [&](double ao, double) { return model.direct(ao); };
   const auto one_bounce = [&](double ao, double rho) {
@@ -173,26 +173,26 @@ void add_saturation(const ShadedScene& wall, const SceneImages& shaded, Gallery&
                   panel(model.total, "model, all bounces")}};
   gallery.add_figure("saturation", rows);
 
-  Grid<float> tau(wall.bake.width, wall.bake.height);
+  Grid<float> tau(scene.bake.width, scene.bake.height);
   for (size_t i = 0; i < tau.size(); ++i)
-    tau[i] = static_cast<float>(model.bounce_ratio(static_cast<double>(wall.bake.visible_fraction[i])));
+    tau[i] = static_cast<float>(model.bounce_ratio(static_cast<double>(scene.bake.visible_fraction[i])));
   gallery.add_numbers(
       "tau", tau, {sequential_color, 0, 1, 0, "tau: each further bounce over the one before, at albedo 1"});
 }
 
-void add_views(const ShadedScene& wall, const SceneImages& shaded, const PictureOptions& options,
+void add_views(const ShadedScene& scene, const SceneImages& shaded, const PictureOptions& options,
                Gallery& gallery) {
-  if (!wall.surface) return gallery.report_missing("views", "the map of the bake was not found");
-  const View view = look_at(*wall.surface, options.camera);
+  if (!scene.surface) return gallery.report_missing("views", "the map of the bake was not found");
+  const View view = trace_view(*scene.surface, options.camera);
   const auto seen = [&](const Grid<glm::vec3>& picture) {
-    return paint_view(*wall.surface, view, picture, glm::vec3(0));
+    return paint_view(*scene.surface, view, picture, glm::vec3(0));
   };
   std::array<std::vector<Panel>, 2> rows;
   const auto add = [&](const char* name, const Grid<glm::vec3>& picture, const std::string& caption) {
     if (picture.empty()) return;
-    const Grid<glm::vec3> look = seen(picture);
-    gallery.add_light(name, look, shaded.exposure_ev);
-    rows[0].push_back(light_panel(look, kPanelSide, shaded.exposure_ev, caption));
+    const Grid<glm::vec3> view_of = seen(picture);
+    gallery.add_light(name, view_of, shaded.exposure_ev);
+    rows[0].push_back(light_panel(view_of, kPanelSide, shaded.exposure_ev, caption));
   };
   add("view_ao_only", shaded.ao_only, error_caption("AO only", shaded.ao_only, shaded.truth));
   add("view_model", shaded.model, error_caption("model", shaded.model, shaded.truth));
@@ -204,7 +204,7 @@ void add_views(const ShadedScene& wall, const SceneImages& shaded, const Picture
   const Grid<float> of_model = luminance_of(seen(difference(shaded.model, shaded.truth)));
   const ColorScale scale = difference_scale(of_ao, of_model, kDifferenceLabel);
   size_t clipped_shown = 0;
-  const Grid<glm::vec3> reflected = seen(difference(shaded.truth, shade_bounce(wall, 0)));
+  const Grid<glm::vec3> reflected = seen(difference(shaded.truth, shade_bounce(scene, 0)));
   rows[1] = {{colored(scaled(of_ao, kPanelSide), scale, clipped_shown), "error of AO only"},
              {colored(scaled(of_model, kPanelSide), scale, clipped_shown), "error of the model"},
              light_panel(reflected, kPanelSide, shaded.exposure_ev, "ground truth, bounces alone")};

@@ -1,5 +1,5 @@
-// What `hemibake render` draws: each function adds the pictures of one subject to a gallery, and says there
-// what is missing and why.
+// Draws the pictures of `hemibake render`: each function adds those of one subject to a gallery, which
+// records what is missing and why.
 #pragma once
 
 #include "lighting/shaded_scene.h"
@@ -14,28 +14,28 @@ struct PictureOptions {
   CameraOptions camera;
 };
 
-// AO only, model and truth, made once for all pictures that show them. Empty where they cannot be made.
+// Holds AO only, model and truth for all pictures that show them; empty where they cannot be made.
 struct SceneImages {
   Grid<glm::vec3> ao_only, model, truth;
   double exposure_ev = 0;
 };
-SceneImages make_scene_images(const ShadedScene& wall, const PictureOptions& options);
+SceneImages make_scene_images(const ShadedScene& scene, const PictureOptions& options);
 
-// ao_only, model, truth, and the three beside each other.
-void add_triptych(const ShadedScene& wall, const SceneImages& shaded, Gallery& gallery);
-// Signed differences of AO only and of the model from the truth.
+// Adds ao_only, model, truth, and the three beside each other.
+void add_triptych(const ShadedScene& scene, const SceneImages& shaded, Gallery& gallery);
+// Adds the signed differences of AO only and of the model from the truth.
 void add_differences(const SceneImages& shaded, Gallery& gallery);
-// The light of every bounce by itself, each at its own exposure.
-void add_bounces(const ShadedScene& wall, const PictureOptions& options, Gallery& gallery);
-// How the colour of the wall deepens with τ.
-void add_saturation(const ShadedScene& wall, const SceneImages& shaded, Gallery& gallery);
-// AO, bent normals and the energy map of the bake.
-void add_planes(const ShadedScene& wall, Gallery& gallery);
-// Every estimator's AO beside the bake's; alchemy's before and after each pass of its blur.
-void add_estimators(const ShadedScene& wall, Gallery& gallery);
-// AO only, model and truth on the surface itself, seen by a camera; and the three with their errors on one
+// Adds the light of every bounce by itself, each at its own exposure.
+void add_bounces(const ShadedScene& scene, const PictureOptions& options, Gallery& gallery);
+// Adds the colour of reflected light that deepens with τ.
+void add_saturation(const ShadedScene& scene, const SceneImages& shaded, Gallery& gallery);
+// Adds AO, bent normals and the energy map of the bake.
+void add_planes(const ShadedScene& scene, Gallery& gallery);
+// Adds every estimator's AO beside the bake's, and alchemy's before and after each pass of its blur.
+void add_estimators(const ShadedScene& scene, Gallery& gallery);
+// Adds AO only, model and truth on the surface seen by a camera, and the three with their errors on one
 // sheet, `overview`.
-void add_views(const ShadedScene& wall, const SceneImages& shaded, const PictureOptions& options,
+void add_views(const ShadedScene& scene, const SceneImages& shaded, const PictureOptions& options,
                Gallery& gallery);
 
 }  // namespace hemibake

@@ -45,8 +45,8 @@ std::string estimate_caption(const std::string& name, const Grid<float>& ao, AoK
 
 }  // namespace
 
-void add_planes(const ShadedScene& wall, Gallery& gallery) {
-  const Bake& bake = wall.bake;
+void add_planes(const ShadedScene& scene, Gallery& gallery) {
+  const Bake& bake = scene.bake;
   if (bake.visible_fraction.empty())
     gallery.report_missing("ao", "the bake holds no ao");
   else
@@ -65,30 +65,30 @@ void add_planes(const ShadedScene& wall, Gallery& gallery) {
       {sequential_color, low, 1, 0, "all bounces at albedo 1 over pi: 1 where no light is missing"});
 }
 
-void add_estimators(const ShadedScene& wall, Gallery& gallery) {
-  if (wall.bake.visible_fraction.empty())
+void add_estimators(const ShadedScene& scene, Gallery& gallery) {
+  if (scene.bake.visible_fraction.empty())
     return gallery.report_missing("estimators", "the bake holds no ao to compare with");
-  if (!wall.surface) return gallery.report_missing("estimators", "the map of the bake was not found");
+  if (!scene.surface) return gallery.report_missing("estimators", "the map of the bake was not found");
   std::array<std::vector<Panel>, 2> rows;
-  rows[0].push_back(grey_panel(wall.bake.visible_fraction, "the bake, AO"));
+  rows[0].push_back(grey_panel(scene.bake.visible_fraction, "the bake, AO"));
   const EstimatorOptions options;
   for (const Estimator& estimator : estimators()) {
     if (estimator.name == std::string_view("alchemy")) continue;
-    const Estimate estimate = estimator.estimate(*wall.surface, options);
+    const Estimate estimate = estimator.estimate(*scene.surface, options);
     gallery.add_values(fmt::format("estimator_{}", estimator.name), estimate.ao);
     rows[0].push_back(
-        grey_panel(estimate.ao, estimate_caption(estimator.name, estimate.ao, estimate.kind, wall.bake)));
+        grey_panel(estimate.ao, estimate_caption(estimator.name, estimate.ao, estimate.kind, scene.bake)));
   }
   // From straight above a pixel is a texel, so that the passes of the picture are passes over the map.
   const AlchemyOptions& alchemy = options.alchemy;
-  const AlchemyImages passes = alchemy_images(orthographic_buffer(*wall.surface, alchemy.camera_height_m),
-                                              alchemy, alchemy_radius_m(*wall.surface, alchemy));
+  const AlchemyImages passes = alchemy_images(orthographic_buffer(*scene.surface, alchemy.camera_height_m),
+                                              alchemy, alchemy_radius_m(*scene.surface, alchemy));
   const auto add_pass = [&](const char* name, const char* caption, const Grid<float>& ao) {
     gallery.add_values(name, ao);
-    rows[1].push_back(grey_panel(ao, estimate_caption(caption, ao, AoKind::kCosine, wall.bake)));
+    rows[1].push_back(grey_panel(ao, estimate_caption(caption, ao, AoKind::kCosine, scene.bake)));
   };
-  if (!wall.bake.irradiance.empty())
-    rows[1].push_back(grey_panel(over_pi(wall.bake.irradiance[0]), "the bake, E0/pi"));
+  if (!scene.bake.irradiance.empty())
+    rows[1].push_back(grey_panel(over_pi(scene.bake.irradiance[0]), "the bake, E0/pi"));
   add_pass("estimator_alchemy_0", "alchemy, raw", passes.raw);
   add_pass("estimator_alchemy_1", "along rows", passes.blurred_rows);
   add_pass("estimator_alchemy_2", "and columns", passes.blurred);

@@ -1,44 +1,88 @@
-// What a report says, as data for its page.
+// Gathers what a report says, as structs; html_json.h writes them for the page.
 #pragma once
 
 #include <array>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "fitting/candidates.h"
 #include "model/model.h"
 #include "report/html_folder.h"
-#include "report/html_planes.h"
 
 namespace hemibake {
 
-// A model that the page offers.
+using Rgb = std::array<double, 3>;
+
+// Albedos that the page plots all bounces at.
+inline constexpr std::array<double, 11> kPlotAlbedos = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1};
+
+// Offers a model on the page.
 struct ReportModel {
-  std::string id;        // bounded, published or notes
-  std::string title;     // for people
-  BoundedModel bounded;  // used where id is bounded
-  GuardedModel guarded;  // used otherwise
-  std::vector<std::string> origin;
+  std::string id;  // bounded, published or notes
+  std::string title;
+  ShaderModel model;
+  std::vector<std::string> origin;  // head of its shader texts
 
   double total(double ao, double albedo) const {
-    return id == "bounded" ? bounded.total(ao, albedo) : guarded.total(ao, albedo);
+    return std::visit([&](const auto& m) { return m.total(ao, albedo); }, model);
   }
 };
 
-// Those fitted to the folder's curves, best first, then the one of 2018 with its published constants.
-std::vector<ReportModel> report_models(const ReportFolder& folder);
+// Returns the models fitted to the folder's curves, best first, then that of 2018 with its published
+// constants. Throws InputError where constants of `fits` cannot be used, without the file's name.
+std::vector<ReportModel> report_models(const std::optional<FitFile>& fits);
 
-using Rgb = std::array<double, 3>;
+// Holds the rms over all texels of E/π of each model, and of plain AO last, at one albedo.
+struct TexelErrors {
+  double albedo = 0;
+  std::vector<double> rms;
+};
 
-// Everything but the planes: settings, curves, models with their shader texts and errors, checks, sweep,
-// trade study. What the folder does not have is null. albedo: what the page opens with, 0..1.
-nlohmann::ordered_json report_data(const ReportFolder& folder, std::span<const ReportModel> models,
-                                   const PackedPlanes& planes, const Rgb& albedo);
+// Holds means over the texels of a bake; irradiance over π.
+struct BakeMeans {
+  std::optional<double> ao, total, residual, worst_residual;
+  std::vector<double> irradiance;
+};
 
-// Light of some texels of the bake (not of its codes), for comparison with the page: α, E_b/π, and relative
-// to an open surface at `albedo` each model and the truth Σ ρᵇ E_b/π.
-nlohmann::ordered_json report_probes(const Bake& bake, std::span<const ReportModel> models, int stride,
-                                     const Rgb& albedo);
+// Holds E/π of one bin at each of kPlotAlbedos, the tail after the last bounce included, and at albedo 1
+// without.
+struct BinTotals {
+  std::array<double, kPlotAlbedos.size()> all_bounces{};
+  double stored_bounces = 0;
+};
+
+// Holds the errors of a model that has no constants of this map.
+struct OtherModel {
+  std::string title;
+  Score score;
+};
+
+// Holds what a report computes from a folder; empty where the folder lacks the data.
+struct ReportData {
+  std::string title;
+  Rgb albedo{};  // the page opens with
+  BakeMeans means;
+  std::vector<TexelErrors> texel_errors;
+  std::vector<BinTotals> totals;  // of each bin of the curves; 0 for an empty bin
+  std::vector<Score> scores;      // of each model
+  std::vector<OtherModel> other_models;
+};
+
+ReportData gather_report(const ReportFolder& folder, std::span<const ReportModel> models, const Rgb& albedo);
+
+// Holds the light of one texel of the bake (not of the page's codes), irradiance over π.
+struct ReportProbe {
+  int x = 0, y = 0;
+  double ao = 0;
+  std::vector<double> irradiance;  // E_b at albedo 1
+  std::vector<Rgb> models;         // E of each model
+  Rgb truth{};                     // Σ ρᵇ E_b
+};
+
+// Returns up to 4 × 4 texels among every `stride`-th, to compare the page with. None without AO.
+std::vector<ReportProbe> report_probes(const Bake& bake, std::span<const ReportModel> models, int stride,
+                                       const Rgb& albedo);
 
 }  // namespace hemibake

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr int kDefaultBins = 100;
 
-// Null where the file is not there. list: what it has to have, none if empty.
+// Returns null where the file is not there. list: name of a list that it must have, or empty.
 nlohmann::ordered_json read_if_there(const fs::path& path, const char* list) {
   if (!fs::exists(path)) return nullptr;
   nlohmann::ordered_json json = read_json(path);
@@ -45,7 +45,8 @@ void read_sweep(const fs::path& folder, std::vector<SweepCurves>& sweep) {
       sweep.push_back({*amplitude, read_curves(entry.path())});
 }
 
-// The page of a 512 x 512 bake with 20 bounces has 8 MiB and is to stay below 12; as text a third is added.
+// Bytes of pictures on a page: with the 8 MiB of a 512 x 512 bake, and a third more as text, it stays below
+// 12 MiB.
 constexpr size_t kPictureBytes = 3000000;
 
 // Figures, which have no EXR of their own and show several pictures side by side, come first.

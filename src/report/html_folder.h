@@ -1,4 +1,4 @@
-// What a folder has for a report.
+// Reads the files of a folder that a report shows.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +13,13 @@
 
 namespace hemibake {
 
-// Curves of one amplitude, from `scripts/sweep`.
+// Holds the curves of one amplitude, from `scripts/sweep`.
 struct SweepCurves {
   double amplitude_m = 0;
   Curves curves;
 };
 
-// A PNG that `hemibake render` wrote, by the name it has in render.json.
+// Holds a PNG that `hemibake render` wrote, by its name in render.json.
 struct ReportPicture {
   std::string name;
   std::string png;  // the file's bytes; empty where the page has no room for it
@@ -38,7 +38,8 @@ struct ReportFolder {
       pictures;  // of render.json in the folder or in its folder `pictures`, figures first
 };
 
-// Throws InputError where `path` is not a folder, has none of these files, or one of them cannot be read.
+// Reads what is there. Throws InputError where `path` is no folder, has none of these files, or one is
+// unreadable.
 ReportFolder read_report_folder(const std::filesystem::path& path);
 
 }  // namespace hemibake

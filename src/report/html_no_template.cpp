@@ -1,4 +1,4 @@
-// For a build without Node.
+// Stands for the page in a build without Node.
 #include "report/html_page.h"
 
 namespace hemibake {

@@ -10,7 +10,7 @@
 namespace hemibake {
 namespace {
 
-// What src/report/web/index.html has in the places of the data.
+// Marks of the places of the data in src/report/web/index.html.
 constexpr std::string_view kTitlePlace = "<!-- title -->";
 constexpr std::string_view kDataPlace = "<!-- data -->";
 constexpr std::string_view kPlanesPlace = "<!-- planes -->";
@@ -28,7 +28,7 @@ std::string escape_html(const std::string& text) {
   return escaped;
 }
 
-// JSON inside a script element: no `<` may stand in it, which JSON has in strings only.
+// Writes JSON for a script element, in which no `<` may stand; JSON has it in strings only.
 std::string script_json(const nlohmann::ordered_json& data) {
   const std::string text = data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   std::string escaped;
@@ -42,7 +42,7 @@ std::string script_json(const nlohmann::ordered_json& data) {
   return escaped;
 }
 
-// `page` from `from` up to `place`, which is then left behind.
+// Returns `page` from `from` to `place`, and moves `from` behind it.
 std::string_view take_until(std::string_view page, std::string_view place, size_t& from) {
   const size_t at = page.find(place, from);
   if (at == std::string_view::npos)

@@ -1,4 +1,4 @@
-// The page of a report: the template that src/report/web/ is built into, filled with data.
+// Fills the template that src/report/web/ is built into with the data of a report.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,10 +11,10 @@
 
 namespace hemibake {
 
-// The page without its data; empty where this build was made without Node, and so has no report.
+// Returns the page without its data; empty in a build without Node, which has no report.
 std::string_view page_template();
 
-// The whole page. data: what report_data gave.
+// Returns the whole page. data: of json_from_report.
 std::string fill_page(std::string_view page, const nlohmann::ordered_json& data, const PackedPlanes& planes,
                       std::span<const ReportPicture> pictures);
 

@@ -1,4 +1,4 @@
-// The planes of a bake as a page carries them: whole numbers of one step, compressed, as text.
+// Packs the planes of a bake for a page: whole numbers of one step, compressed, as text.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct PackedPlane {
   std::string base64;  // of a zlib stream of width × height low bytes, then as many high bytes, of the codes
 };
 
-// Every `stride`-th texel of every `stride`-th row: texel (x, y) is (x·stride, y·stride) of the bake.
+// Holds every `stride`-th texel of every `stride`-th row: texel (x, y) is (x·stride, y·stride) of the bake.
 struct PackedPlanes {
   int width = 0, height = 0;
   int stride = 1;
@@ -25,11 +25,10 @@ struct PackedPlanes {
   double total_error_over_pi = 0;       // of Σ E_b, which is the largest of Σ ρᵇ E_b for ρ in 0..1
 };
 
-// Planes α and E_b that are there, in this order; none gives an empty list. Codes have 16 bits; before the
-// compression each is replaced by its difference, modulo 2¹⁶, from what its neighbours predict: the median of
-// left, above and left + above − above left (Weinberger, Seroussi and Sapiro, "LOCO-I", 1996), where outside
-// is 0. largest_side: of the kept texels, 1 and up. Throws InputError naming plane and texel for a value that
-// is not finite or below 0.
+// Packs the planes α and E_b that are there, in this order. A 16-bit code is replaced by its difference,
+// modulo 2¹⁶, from the median of left, above and left + above − above left (Weinberger, Seroussi and Sapiro,
+// "LOCO-I", 1996), outside being 0, and then compressed. largest_side: longer side of the kept texels, 1 and
+// up. Throws InputError naming plane and texel for a value that is not finite or below 0.
 PackedPlanes pack_planes(const Bake& bake, int largest_side);
 
 }  // namespace hemibake

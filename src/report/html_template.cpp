@@ -1,4 +1,4 @@
-// The page that src/report/web/ was built into, as bytes of this program (CMake gives its path).
+// Carries the page that src/report/web/ was built into as bytes of this program (CMake gives its path).
 #include <string_view>
 
 #include "report/html_page.h"

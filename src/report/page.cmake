@@ -2,8 +2,8 @@
 # their list changes), the bundler makes one HTML file of src/report/web/, and html_template.cpp carries it inside the
 # library. Without Node or npm, or with -DHEMIBAKE_REPORT=OFF, the command says that it is left out.
 set(page_sources
-  build.mjs chart.ts checks.ts curves.ts data.ts dom.ts index.html main.ts models.ts model.ts package.json
-  package-lock.json page.css pictures.ts planes.ts probe.ts shader.ts summary.ts surface.ts sweep.ts theme.ts trade.ts tsconfig.json
+  albedo.ts build.mjs chart.ts checks.ts color.ts curves.ts data.ts dom.ts index.html main.ts models.ts model.ts package.json
+  package-lock.json page.css picture.ts pictures.ts planes.ts probe.ts shader.ts summary.ts surface.ts sweep.ts theme.ts trade.ts tsconfig.json
   viewer.ts viewer_canvas.ts viewer_gl.ts viewer_shader.ts)
 list(TRANSFORM page_sources PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/report/web/)
 set(page_folder ${CMAKE_BINARY_DIR}/page)

@@ -40,7 +40,7 @@ Evaluate evaluator(const std::string& model, const FittedModels& fitted) {
 // Fits the model at bin centres; empty where the curves do not allow it.
 std::vector<NamedFit> fits_or_none(const char* model, const Curves& curves) {
   try {
-    return fit_model(model, curves, Abscissa::center, Weights::none);
+    return fit_model(model, curves, Abscissa::kCenter, Weights::kNone);
   } catch (const std::runtime_error&) {
     throw_if_cancelled();
     return {};
@@ -54,7 +54,7 @@ FittedModels fit_light_models(const Curves& curves) {
   const std::vector<NamedFit> published = fits_or_none("published", curves);
   if (published.size() == 2)
     fitted.eq12 =
-        PublishedModel{parameter_value(published[0].fit, "k"), parameter_value(published[0].fit, "e"),
+        Mayaux2018Model{parameter_value(published[0].fit, "k"), parameter_value(published[0].fit, "e"),
                        parameter_value(published[1].fit, "A"), parameter_value(published[1].fit, "B")};
   const std::vector<NamedFit> bounded = fits_or_none("bounded", curves);
   if (bounded.size() == 2)

@@ -17,7 +17,7 @@ namespace hemibake {
 // Models with constants fitted to the map's own curves: the best each can do. Absent where the map has too
 // few AO values for a fit (flat ground has one).
 struct FittedModels {
-  std::optional<PublishedModel> eq12;  // the formulas of 2018
+  std::optional<Mayaux2018Model> eq12;  // the formulas of 2018
   std::optional<BoundedModel> bounded;
 };
 

@@ -94,7 +94,7 @@ ordered_json json_of(const FittedModels& models) {
 FittedModels fitted_models_from(const ordered_json& json) {
   FittedModels models;
   if (const auto& m = json.at("eq12-refitted"); !m.is_null())
-    models.eq12 = PublishedModel{m.at("k"), m.at("e"), m.at("A"), m.at("B")};
+    models.eq12 = Mayaux2018Model{m.at("k"), m.at("e"), m.at("A"), m.at("B")};
   if (const auto& m = json.at("bounded"); !m.is_null())
     models.bounded = BoundedModel{m.at("k0"), m.at("k1"), m.at("q"), m.at("d")};
   return models;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/constants.h"
+#include "core/context.h"
 #include "core/error.h"
 #include "core/context.h"
 #include "core/progress.h"

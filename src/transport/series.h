@@ -8,12 +8,12 @@
 
 namespace hemibake {
 
-// Returns Σ_b ρᵇ E_b, b = 0 … count − 1, by Horner's rule in double from the last bounce to the first.
+// Returns Σ_b ρᵇ E_b, b = 0 … count − 1, in double from the first bounce to the last.
 // light: E_b at albedo 1 as light(b), in any unit. albedo: ρ, 0..1. None: 0.
 template <class Light>
 double sum_bounces(size_t count, const Light& light, double albedo) {
-  double sum = 0;
-  for (size_t b = count; b-- > 0;) sum = sum * albedo + static_cast<double>(light(b));
+  double sum = 0, power = 1;
+  for (size_t b = 0; b < count; ++b, power *= albedo) sum += power * static_cast<double>(light(b));
   return sum;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/constants.h"
 #include "core/error.h"
 
 namespace hemibake {
@@ -73,6 +74,29 @@ TEST(Curves, PooledSetsKeepTheirBinsAndTheCurvesTheyShare) {
   EXPECT_EQ(pooled.bounce_count, 1);
   EXPECT_EQ(pooled.bins[0].bounces.size(), 1U);
   EXPECT_FALSE(pooled.has_counts);
+}
+
+// A bin whose last two bounces are nearly equal: their ratio alone would bring 9.5 π·0.1 more.
+TEST(Curves, TailBringsNoMoreLightThanThereIs) {
+  CurveBin slow;
+  for (const double over_pi : {0.1, 0.1, 0.1, 0.095}) slow.bounces.push_back({over_pi * kPi, 0});
+  EXPECT_NEAR(total_over_pi(slow, 1), 1, 1e-15);
+  // Ratio at which 0.095 (r + r² + …) is the 0.605 left: 0.605/0.7. Some roundings of numbers below 1.
+  const double ratio = 0.605 / 0.7, power = 0.125;
+  EXPECT_NEAR(total_over_pi(slow, 0.5),
+              0.1 + 0.05 + 0.025 + 0.095 * power + 0.095 * power * 0.5 * ratio / (1 - 0.5 * ratio), 1e-15);
+  EXPECT_EQ(total_over_pi(slow, 0), 0.1);
+  for (BounceStatistics& bounce : slow.bounces) bounce.mean *= 3;
+  EXPECT_NEAR(total_over_pi(slow, 1), 3 * 0.395, 1e-15) << "more than π already: no tail";
+}
+
+TEST(Curves, TailOfABinWithTimeToSpareIsGeometric) {
+  CurveBin bin;
+  for (const double mean : {1.0, 0.5, 0.25}) bin.bounces.push_back({mean, 0});
+  EXPECT_DOUBLE_EQ(total_over_pi(bin, 1), 2 / kPi);
+  EXPECT_DOUBLE_EQ(total_over_pi(bin, 0.5), 1 / (1 - 0.25) / kPi);
+  bin.bounces.pop_back();
+  EXPECT_DOUBLE_EQ(total_over_pi(bin, 1), 1.5 / kPi) << "two bounces tell no ratio";
 }
 
 TEST(Curves, UnusableTexelsAreNamed) {

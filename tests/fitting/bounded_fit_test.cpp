@@ -7,8 +7,8 @@
 #include "core/error.h"
 #include "fitting/bounded.h"
 #include "fitting/candidates.h"
+#include "fitting/mayaux2018.h"
 #include "fitting/models.h"
-#include "fitting/published.h"
 #include "model/model.h"
 
 namespace hemibake {
@@ -30,7 +30,7 @@ Curves exact_curves(const BoundedModel& model, int bounces) {
 }
 
 std::vector<NamedFit> fit_bounded(const Curves& curves) {
-  return fit_model("bounded", curves, Abscissa::center, Weights::none);
+  return fit_model("bounded", curves, Abscissa::kCenter, Weights::kNone);
 }
 
 TEST(BoundedFit, RecoversExactParameters) {
@@ -74,12 +74,12 @@ TEST(BoundedFit, StandardErrorsCover) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
   const Fit direct =
-      fit_bounded_direct(curve_points(exact_curves(truth, 20), 0, Abscissa::center, Weights::none));
+      fit_bounded_direct(curve_points(exact_curves(truth, 20), 0, Abscissa::kCenter, Weights::kNone));
   const std::vector<double> albedos = fit_albedos();
   int within[2] = {};
   for (int t = 0; t < trials; ++t) {
     std::vector<CurvePoint> points =
-        total_points(exact_curves(truth, 20), albedos, Abscissa::center, Weights::none);
+        total_points(exact_curves(truth, 20), albedos, Abscissa::kCenter, Weights::kNone);
     for (size_t i = 0; i < points.size(); i += albedos.size()) {
       const double noise = 0.01 * normal(random);
       for (size_t r = 0; r < albedos.size(); ++r) points[i + r].value += noise;
@@ -98,7 +98,7 @@ TEST(BounceFit, RecoversExactParameters) {
   for (const auto& [a, b, c] :
        {std::array{56.0, 4.1, 0.2}, std::array{28.0, 39.0, 0.6}, std::array{1.5, 1.1, 0.9}}) {
     for (CurveBin& bin : curves.bins) bin.bounces[1].mean = kPi * bounce_factor(bin_center(bin), a, b, c);
-    const std::vector<NamedFit> fits = fit_model("bounces", curves, Abscissa::center, Weights::none);
+    const std::vector<NamedFit> fits = fit_model("bounces", curves, Abscissa::kCenter, Weights::kNone);
     ASSERT_EQ(fits.size(), 1U);
     EXPECT_NEAR(parameter_value(fits[0].fit, "A") / a, 1, 1e-5);
     EXPECT_NEAR(parameter_value(fits[0].fit, "B"), b, 1e-4);
@@ -108,7 +108,7 @@ TEST(BounceFit, RecoversExactParameters) {
 
 TEST(JimenezFit, RecoversTheirConstants) {
   Curves curves = exact_curves({}, 2);
-  std::vector<CurvePoint> points = visibility_points(curves, fit_albedos(), Weights::none);
+  std::vector<CurvePoint> points = visibility_points(curves, fit_albedos(), Weights::kNone);
   for (CurvePoint& point : points) {
     point.value = jimenez_cubic(point.ao, point.albedo, kJimenezConstants.data());
   }
@@ -135,9 +135,9 @@ TEST(Candidates, TheRightOneIsExactOnItsOwnCurves) {
 TEST(FitModel, MissingBouncesAndUnknownNamesAreRefused) {
   const Curves direct_only = exact_curves({}, 0);
   for (const FitModel& model : fit_models()) {
-    EXPECT_THROW(fit_model(model.name, direct_only, Abscissa::center, Weights::none), InputError);
+    EXPECT_THROW(fit_model(model.name, direct_only, Abscissa::kCenter, Weights::kNone), InputError);
   }
-  EXPECT_THROW(fit_model("none", exact_curves({}, 2), Abscissa::center, Weights::none), InputError);
+  EXPECT_THROW(fit_model("none", exact_curves({}, 2), Abscissa::kCenter, Weights::kNone), InputError);
 }
 
 }  // namespace

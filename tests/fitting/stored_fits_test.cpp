@@ -59,7 +59,7 @@ TEST(StoredFits, AllCanBeReadAndSayWhereTheyComeFrom) {
 
 TEST(StoredFits, PublishedConstantsAreThoseOfTheModel) {
   const FitFile file = stored("published");
-  const PublishedModel model;
+  const Mayaux2018Model model;
   EXPECT_EQ(parameter_value(fit_called(file, "F0"), "k"), model.k);
   EXPECT_EQ(parameter_value(fit_called(file, "F0"), "e"), model.e);
   EXPECT_EQ(parameter_value(fit_called(file, "F1"), "A"), model.a);
@@ -69,7 +69,7 @@ TEST(StoredFits, PublishedConstantsAreThoseOfTheModel) {
 FitFile refit(const Curves& curves, const std::vector<std::string>& models, Abscissa abscissa) {
   FitFile file;
   for (const std::string& model : models) {
-    for (NamedFit& named : fit_model(model, curves, abscissa, Weights::none))
+    for (NamedFit& named : fit_model(model, curves, abscissa, Weights::kNone))
       file.fits.push_back(std::move(named));
   }
   return file;
@@ -83,10 +83,11 @@ TEST(StoredFits, PublishedCurvesGiveTheStoredConstants) {
   const fs::path path = fs::path(HEMIBAKE_REFERENCE_DIR) / "published_curves.csv";
   if (!fs::exists(path)) GTEST_SKIP() << path << " is not there";
   const Curves curves = read_curves(path);
-  expect_same(stored("published_refit"), refit(curves, {"published"}, Abscissa::published), kSameMinimum, 0);
-  expect_same(stored("published_centers"), refit(curves, {"published", "bounded"}, Abscissa::center),
+  expect_same(stored("published_refit"), refit(curves, {"published"}, Abscissa::kMayaux2018), kSameMinimum,
+              0);
+  expect_same(stored("published_centers"), refit(curves, {"published", "bounded"}, Abscissa::kCenter),
               kSameMinimum, 0);
-  expect_same(stored("published_bounces"), refit(curves, {"bounces", "jimenez"}, Abscissa::center),
+  expect_same(stored("published_bounces"), refit(curves, {"bounces", "jimenez"}, Abscissa::kCenter),
               kSameMinimum, 0);
   EXPECT_EQ(stored("published_centers").provenance["input_sha256"], sha256_of_file(path));
 }
@@ -96,12 +97,12 @@ TEST(StoredFits, PublishedConstantsHaveTheErrorsStored) {
   const fs::path path = fs::path(HEMIBAKE_REFERENCE_DIR) / "published_curves.csv";
   if (!fs::exists(path)) GTEST_SKIP() << path << " is not there";
   const Curves curves = read_curves(path);
-  const PublishedModel model;
+  const Mayaux2018Model model;
   double direct = 0, first = 0;
-  for (const CurvePoint& point : curve_points(curves, 0, Abscissa::center, Weights::none)) {
+  for (const CurvePoint& point : curve_points(curves, 0, Abscissa::kCenter, Weights::kNone)) {
     direct += std::pow(model.direct(point.ao) - point.value, 2);
   }
-  for (const CurvePoint& point : curve_points(curves, 1, Abscissa::center, Weights::none)) {
+  for (const CurvePoint& point : curve_points(curves, 1, Abscissa::kCenter, Weights::kNone)) {
     first += std::pow(model.first_bounce(point.ao) - point.value, 2);
   }
   EXPECT_NEAR(std::sqrt(direct / 100), fit_called(stored("published"), "F0").rms, 1e-8);
@@ -112,10 +113,10 @@ TEST(StoredFits, CurvesOfOurMapsGiveTheStoredConstants) {
   std::vector<Curves> sets;
   for (const std::string name : {"bricks", "shapes", "concrete", "noise"}) {
     sets.push_back(read_curves(fs::path(HEMIBAKE_SOURCE_DIR) / "fits" / "curves" / (name + ".csv")));
-    expect_same(stored(name), refit(sets.back(), {"published", "bounded"}, Abscissa::center), kSameMinimum,
+    expect_same(stored(name), refit(sets.back(), {"published", "bounded"}, Abscissa::kCenter), kSameMinimum,
                 0);
   }
-  expect_same(stored("all_maps"), refit(pool_curves(sets), {"published", "bounded"}, Abscissa::center),
+  expect_same(stored("all_maps"), refit(pool_curves(sets), {"published", "bounded"}, Abscissa::kCenter),
               kSameMinimum, 0);
 }
 

@@ -16,8 +16,8 @@ FitFile make_example() {
           0.2,
           7,
           1.5,
-          Abscissa::published,
-          Weights::standard_error};
+          Abscissa::kMayaux2018,
+          Weights::kStandardError};
   Fit exact = fit;
   exact.aicc.reset();
   return {{{"F0", fit}, {"F1", exact}}, {{"version", "1"}}};

@@ -99,7 +99,7 @@ void expect_equal_to_library(const Model& model) {
   const OffscreenContext context;
   if (!context.ready()) GTEST_SKIP() << "no OpenGL ES 3.1 without a window here";
   const std::vector<float> results =
-      run_shader(kHead + shader_text(model, Language::glsl, {"a test"}) + kMain);
+      run_shader(kHead + shader_text(model, Language::kGlsl, {"a test"}) + kMain);
   ASSERT_FALSE(results.empty());
   double largest = 0;
   size_t at = 0;

@@ -109,21 +109,21 @@ TEST(GuardedModel, IsThePublishedModelWhereThatOneIsSound) {
   const GuardedModel guarded;
   for (double ao = 0.01; ao < 0.76; ao += 0.01) {
     for (const double albedo : {0.1, 0.5, 0.9, 1.0}) {
-      EXPECT_NEAR(guarded.total(ao, albedo), guarded.published.total(ao, albedo), 1e-14);
+      EXPECT_NEAR(guarded.total(ao, albedo), guarded.formulas.total(ao, albedo), 1e-14);
     }
-    EXPECT_NEAR(guarded.bounce_ratio(ao), guarded.published.bounce_ratio(ao), 1e-14);
+    EXPECT_NEAR(guarded.bounce_ratio(ao), guarded.formulas.bounce_ratio(ao), 1e-14);
   }
 }
 
-TEST(PublishedModel, ExceedsOneFrom0949253) {
-  const PublishedModel model;
+TEST(Mayaux2018Model, ExceedsOneFrom0949253) {
+  const Mayaux2018Model model;
   double highest = 0;
   for (int i = 0; i <= 100000; ++i) highest = std::max(highest, model.direct(i / 100000.0));
   EXPECT_NEAR(highest, 1.00614, 1e-5);
 }
 
-TEST(PublishedModel, RatioOfBouncesLeavesItsRangeFrom0763) {
-  const PublishedModel model;
+TEST(Mayaux2018Model, RatioOfBouncesLeavesItsRangeFrom0763) {
+  const Mayaux2018Model model;
   EXPECT_GT(model.bounce_ratio(kLastSound), 0);
   EXPECT_LT(model.bounce_ratio(kLastSound + 0.001), 0);
   EXPECT_LT(model.bounce_ratio(0.94905), -100);
@@ -132,8 +132,8 @@ TEST(PublishedModel, RatioOfBouncesLeavesItsRangeFrom0763) {
 
 // Above 0.949254 both F₁ and 1 − F₀ are continuous and 1 − F₀ is not 0: where 1 − ρτ changes sign there, the
 // total has a pole. At ρ = 1 it is exactly 1.
-TEST(PublishedModel, TotalHasAPoleAtEveryAlbedoBelowOne) {
-  const PublishedModel model;
+TEST(Mayaux2018Model, TotalHasAPoleAtEveryAlbedoBelowOne) {
+  const Mayaux2018Model model;
   for (const double albedo : {0.1, 0.3, 0.5, 0.8, 0.9, 0.99}) {
     int sign_changes = 0;
     for (double ao = 0.9493; ao < 0.9999; ao += 1e-5) {

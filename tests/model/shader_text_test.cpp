@@ -45,7 +45,7 @@ template <class Model>
 void expect_equal_to_library(const Model& model) {
   const TemporaryFolder folder;
   if (!is_installed("c++", folder)) GTEST_SKIP() << "no C++ compiler here";
-  write_bytes(folder / "model.h", shader_text(model, Language::cpp, {"a test"}));
+  write_bytes(folder / "model.h", shader_text(model, Language::kCpp, {"a test"}));
   write_bytes(folder / "main.cpp", kProgram);
   const CommandOutcome outcome = run_command(
       fmt::format("cd '{}' && c++ -std=c++11 -O2 -Wall -Wextra -Werror main.cpp -o main && ./main",
@@ -89,10 +89,10 @@ TEST(ShaderText, EveryModelCompilesAsGlslAndHlsl) {
       "bounce_ratio(v.x) + first_bounce_irradiance(v.y)); }\n";
   const auto expect_compiles = [&](const auto& model) {
     write_bytes(folder / "desktop.frag",
-                "#version 330\n" + shader_text(model, Language::glsl, {"a test"}) + glsl_main);
+                "#version 330\n" + shader_text(model, Language::kGlsl, {"a test"}) + glsl_main);
     write_bytes(folder / "es.frag", "#version 300 es\nprecision highp float;\n" +
-                                        shader_text(model, Language::glsl, {"a test"}) + glsl_main);
-    write_bytes(folder / "model.hlsl", shader_text(model, Language::hlsl, {"a test"}) + hlsl_main);
+                                        shader_text(model, Language::kGlsl, {"a test"}) + glsl_main);
+    write_bytes(folder / "model.hlsl", shader_text(model, Language::kHlsl, {"a test"}) + hlsl_main);
     for (const std::string arguments : {"desktop.frag", "es.frag", "-D -S frag -e main -V model.hlsl"}) {
       const CommandOutcome outcome = run_command(
           fmt::format("cd '{}' && glslangValidator {}", folder.path().string(), arguments), folder.path());
@@ -107,23 +107,36 @@ TEST(ShaderText, EveryModelCompilesAsGlslAndHlsl) {
 // A fit may bring any constant of either sign: "--" would be another operator.
 TEST(ShaderText, NegativeConstantsAreNoOperators) {
   GuardedModel model = kPublished;
-  model.published.b = -0.815;
-  model.published.k = -0.25;
-  for (const Language language : {Language::glsl, Language::hlsl, Language::cpp})
+  model.formulas.b = -0.815;
+  model.formulas.k = -0.25;
+  for (const Language language : {Language::kGlsl, Language::kHlsl, Language::kCpp})
     EXPECT_EQ(shader_text(model, language, {}).find("--"), std::string::npos);
 }
 
 TEST(ShaderText, OriginStaysInsideItsComments) {
-  const std::string text = shader_text(kBounded, Language::glsl, {"a\nfloat b;\\", "c"});
+  const std::string text = shader_text(kBounded, Language::kGlsl, {"a\nfloat b;\\", "c"});
   EXPECT_EQ(text.substr(0, text.find("// c\n")), "// a/float b;/\n");
 }
 
+// Whoever pastes the text owes nothing, and the text says so itself.
+TEST(ShaderText, HeadSaysThatItIsFreeOfConditions) {
+  for (const Language language : {Language::kGlsl, Language::kHlsl, Language::kCpp})
+    for (const ShaderModel& model : {ShaderModel(kBounded), ShaderModel(kPublished)}) {
+      const std::string text = shader_text(model, language, {"a test"});
+      EXPECT_EQ(
+          text.find(
+              "// a test\n// SPDX-License-Identifier: MIT-0. Anyone may use this text without conditions.\n"),
+          0U)
+          << text;
+    }
+}
+
 TEST(ShaderText, NothingIsLeftToReplace) {
-  for (const Language language : {Language::glsl, Language::hlsl, Language::cpp}) {
+  for (const Language language : {Language::kGlsl, Language::kHlsl, Language::kCpp}) {
     for (const std::string& text :
          {shader_text(kBounded, language, {}), shader_text(kPublished, language, {})}) {
       EXPECT_EQ(text.find('$'), std::string::npos) << text;
-      const std::string code = text.substr(language == Language::cpp ? text.rfind("#include") + 10 : 0);
+      const std::string code = text.substr(language == Language::kCpp ? text.rfind("#include") + 10 : 0);
       EXPECT_EQ(code.find('#'), std::string::npos) << code;
     }
   }

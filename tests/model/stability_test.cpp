@@ -100,7 +100,7 @@ TEST(Stability, GuardedModelIsFiniteAndLosesDigitsOnlyWhereTheFormulasCancel) {
 
 TEST(Stability, PublishedModelFailsNearItsPoles) {
   print_head();
-  const std::vector<Errors> errors = print_rows("published", PublishedModel{});
+  const std::vector<Errors> errors = print_rows("published", Mayaux2018Model{});
   EXPECT_FALSE(errors[2].finite);  // τ = 1 − 0/0 at α = 1
   EXPECT_FALSE(errors[3].finite);
   EXPECT_GT(errors[2].absolute, 1e-2);  // beside the pole at 0.949253

@@ -117,7 +117,7 @@ TEST(Camera, FromAboveTheMapIsItsOwnPicture) {
   options.elevation_rad = kPi / 2;
   options.width = options.height = 64;
   options.span = 2;  // 32 texels across
-  const View view = look_at(surface, options);
+  const View view = trace_view(surface, options);
   const Grid<glm::vec3> picture = paint_view(surface, view, texels, glm::vec3(-1));
   for (int y = 0; y < 64; y += 3)
     for (int x = 0; x < 64; x += 3) {
@@ -139,13 +139,13 @@ TEST(Camera, WrappingMapFillsThePicture) {
   options.azimuth_rad = kPi;  // below the picture of the map
   options.width = 40;
   options.height = 30;
-  const View view = look_at(surface, options);
+  const View view = trace_view(surface, options);
   for (const ViewSample& sample : view.samples) {
     ASSERT_NE(sample.facet, ViewSample::kNothing);
     ASSERT_GE(std::min(sample.u, sample.v), -1e-6f);
     ASSERT_LE(sample.u + sample.v, 1 + 1e-6f);
   }
-  EXPECT_TRUE(look_at(surface, options).samples[5].u == view.samples[5].u);
+  EXPECT_TRUE(trace_view(surface, options).samples[5].u == view.samples[5].u);
 }
 
 TEST(Camera, ExtremesAreSeen) {
@@ -154,14 +154,14 @@ TEST(Camera, ExtremesAreSeen) {
     CameraOptions options;
     options.width = options.height = 8;
     size_t seen = 0;
-    for (const ViewSample& sample : look_at(surface, options).samples)
+    for (const ViewSample& sample : trace_view(surface, options).samples)
       seen += sample.facet != ViewSample::kNothing;
     EXPECT_EQ(seen, size_t{8 * 8 * 9}) << amplitude;
   }
   const Surface one = make_surface(Grid<float>(1, 1), 1, 1, Edge::kWrap);
   CameraOptions small;
   small.width = small.height = 4;
-  EXPECT_NE(look_at(one, small).samples[0].facet, ViewSample::kNothing);
+  EXPECT_NE(trace_view(one, small).samples[0].facet, ViewSample::kNothing);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST_F(PublishedCurves, AreRead) {
 
 // The published digits, to the bar of 10⁻⁵: the fit of 2018 stopped about 5·10⁻⁶ short of the minimum.
 TEST_F(PublishedCurves, GiveThePublishedConstantsAtThePublishedAbscissa) {
-  const std::vector<NamedFit> fits = fit_model("published", curves_, Abscissa::published, Weights::none);
+  const std::vector<NamedFit> fits = fit_model("published", curves_, Abscissa::kMayaux2018, Weights::kNone);
   EXPECT_NEAR(parameter_value(fits[1].fit, "A") / 27.576937094210385, 1, 1e-5);
   EXPECT_NEAR(parameter_value(fits[1].fit, "B") / 3.3364392003423804, 1, 1e-5);
   EXPECT_NEAR(parameter_value(fits[1].fit, "A"), 27.5768064, 5e-7);  // an independent fit of the same data
@@ -36,7 +36,7 @@ TEST_F(PublishedCurves, GiveThePublishedConstantsAtThePublishedAbscissa) {
 }
 
 TEST_F(PublishedCurves, GiveOtherConstantsAtBinCenters) {
-  const std::vector<NamedFit> fits = fit_model("published", curves_, Abscissa::center, Weights::none);
+  const std::vector<NamedFit> fits = fit_model("published", curves_, Abscissa::kCenter, Weights::kNone);
   EXPECT_NEAR(parameter_value(fits[0].fit, "k"), 0.51608, 1e-5);
   EXPECT_NEAR(parameter_value(fits[0].fit, "e"), 0.75360, 1e-5);
   EXPECT_NEAR(fits[0].fit.rms, 0.00634, 1e-5);
@@ -46,7 +46,7 @@ TEST_F(PublishedCurves, GiveOtherConstantsAtBinCenters) {
 }
 
 TEST_F(PublishedCurves, HaveNoCountsToWeighBy) {
-  EXPECT_THROW(fit_model("published", curves_, Abscissa::center, Weights::count), std::runtime_error);
+  EXPECT_THROW(fit_model("published", curves_, Abscissa::kCenter, Weights::kCount), std::runtime_error);
 }
 
 }  // namespace

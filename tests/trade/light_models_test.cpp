@@ -43,7 +43,7 @@ void expect_only_right(const std::string& model, const FittedModels& fitted,
 }
 
 TEST(LightModels, AreTheFormulasTheyAreNamedFor) {
-  const PublishedModel refit{0.4, 1.2, 20, 3.2};
+  const Mayaux2018Model refit{0.4, 1.2, 20, 3.2};
   const BoundedModel bounded{0.3, 0.9, 0.6, 0.7};
   const FittedModels fitted{refit, bounded};
   expect_only_right("plain", fitted, [](double a, double, double) { return a; });

@@ -25,7 +25,7 @@ TEST(Record, ReferenceIsReadBack) {
   facts.error[kAoPlane] = 1e-5;
   facts.best_run_error.back() = 2;
   facts.referee = {{.quantity = "E0", .texels = 7, .bake_mean = 0.25}};
-  facts.models.eq12 = PublishedModel{0.4, 1.2, 20, 3.2};
+  facts.models.eq12 = Mayaux2018Model{0.4, 1.2, 20, 3.2};
   facts.models_on_true_ao = {{"plain", {}}};
   facts.models_on_true_ao[0].error[1].p99 = 0.125;
   const ReferenceFacts back = expect_round_trip(facts);

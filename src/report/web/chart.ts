@@ -1,5 +1,5 @@
-// Plots: ECharts with this page's look. A plot is drawn when it comes near the window, before printing, and again when
-// the theme or the model changes.
+// Draws plots by ECharts with this page's look: when they come near the window, before printing, and again when the
+// theme or the model changes.
 
 import { BarChart, CustomChart, LineChart, ScatterChart } from 'echarts/charts';
 import { AriaComponent, GridComponent, LegendComponent, MarkLineComponent, TooltipComponent } from 'echarts/components';
@@ -21,11 +21,12 @@ export type Pair = [number, number | null];
 export interface Chart {
   element: HTMLElement;
   draw(): void;
+  make(): Option; // the option of ECharts as drawn now
 }
 
-const all: Chart[] = [];
+export const charts: Chart[] = [];
 
-// label: what a screen reader says of it. make: its ECharts option, without what all plots share.
+// Makes a plot. label: for a screen reader. make: its option of ECharts without what all plots share.
 export function chart(label: string, height: number, make: () => Option): Chart {
   const canvas = h('div', { class: 'plot', role: 'img', 'aria-label': label, style: `height:${height}px` });
   let plot: ECharts | null = null;
@@ -52,12 +53,12 @@ export function chart(label: string, height: number, make: () => Option): Chart 
   }).observe(canvas);
   onThemeChange(redraw);
   onModelChange(redraw);
-  const result = { element: canvas, draw };
-  all.push(result);
+  const result = { element: canvas, draw, make };
+  charts.push(result);
   return result;
 }
 
-addEventListener('beforeprint', () => all.forEach((each) => each.draw()));
+addEventListener('beforeprint', () => charts.forEach((each) => each.draw()));
 
 function common(): Option {
   const t = theme();
@@ -116,7 +117,7 @@ export function dashed(name: string, data: Pair[], color: string, more: Option =
   return line(name, data, color, { lineStyle: { width: 1.5, color, type: [5, 4] }, ...more });
 }
 
-// The area between two curves over the same abscissas.
+// Fills the area between two curves over the same abscissas.
 export function band(name: string, low: Pair[], high: Pair[], color: string, more: Option = {}): Option {
   return {
     type: 'custom',
@@ -137,7 +138,7 @@ export function band(name: string, low: Pair[], high: Pair[], color: string, mor
   };
 }
 
-// Abscissas of a model's curve.
+// Abscissas α of a model's curve.
 export const kAoSteps = Array.from({ length: 201 }, (_, i) => i / 200);
 
 export function curve(evaluate: (ao: number) => number): Pair[] {

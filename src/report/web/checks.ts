@@ -1,4 +1,4 @@
-// What was checked, and how the data were made.
+// Shows the checks, and how the data were made.
 
 import { report } from './data';
 import { h, number, place, say, table } from './dom';

@@ -1,4 +1,4 @@
-// All bounces over AO with their spread, the model over them, what it misses, and the sum of it all.
+// Draws all bounces over AO with their spread, the model and its residuals, and the sum of the bounces.
 
 import { aoAxis, axis, band, chart, curve, dashed, grid, line, tooltip, type Option, type Pair } from './chart';
 import { pointsOf, report, type Point } from './data';
@@ -24,12 +24,11 @@ function bounceColor(bounce: number, bounces: number): string {
 
 function showBounces(points: Point[], bounces: number): void {
   const shown = new Set(Array.from({ length: bounces }, (_, b) => b));
-  let withSpread = report.curves!.has_counts;
-  let logarithmic = false;
+  const look: Look = { withSpread: report.curves!.has_counts, logarithmic: false };
   const draw = () => plot.draw();
   const plot = chart(
     `Irradiance over ambient occlusion, ${bounces} curves, with the model and its residuals`, 640,
-    () => bouncesOption(points, bounces, shown, withSpread, logarithmic));
+    () => bouncesOption(points, bounces, shown, look));
 
   const chips = Array.from({ length: bounces }, (_, b) => {
     const chip = h('button', { type: 'button', 'aria-pressed': 'true', onclick: () => toggle([b], !shown.has(b)) }, bounceName(b));
@@ -52,13 +51,18 @@ function showBounces(points: Point[], bounces: number): void {
       h('button', { type: 'button', class: 'plain', onclick: () => toggle(all, true) }, 'all'),
       h('button', { type: 'button', class: 'plain', onclick: () => { toggle(all, false); toggle([0, 1, 2, 3].filter((b) => b < bounces), true); } }, 'first four')),
     h('div', { class: 'options' },
-      report.curves!.has_counts ? checkbox('spread (± one standard deviation of the texels of a bin)', withSpread, (on) => { withSpread = on; draw(); }) : null,
-      checkbox('logarithmic', false, (on) => { logarithmic = on; draw(); })),
+      report.curves!.has_counts ? checkbox('spread (± one standard deviation of the texels of a bin)', look.withSpread, (on) => { look.withSpread = on; draw(); }) : null,
+      checkbox('logarithmic', false, (on) => { look.logarithmic = on; draw(); })),
     plot.element,
     numbers(points, bounces));
 }
 
-function bouncesOption(points: Point[], bounces: number, shown: Set<number>, withSpread: boolean, logarithmic: boolean): Option {
+interface Look {
+  withSpread: boolean;
+  logarithmic: boolean;
+}
+
+function bouncesOption(points: Point[], bounces: number, shown: Set<number>, { withSpread, logarithmic }: Look): Option {
   const model = currentModel();
   const list = [...shown].sort((a, b) => a - b);
   // A logarithm has no zero.
@@ -99,7 +103,7 @@ function describe(points: Point[], list: number[], ao: number): string {
   return `<b>α ${point.ao.toFixed(3)}</b>, ${point.count} texels<table class="tip">${rows.join('')}</table>${list.length > 8 ? '…' : ''}`;
 }
 
-// The same for people who cannot see the plot, made when asked for.
+// Lists the numbers of the plot for people who cannot see it, made when asked for.
 function numbers(points: Point[], bounces: number): HTMLElement {
   const details = h('details', {}, h('summary', {}, 'The numbers'));
   details.addEventListener('toggle', () => {
@@ -121,7 +125,7 @@ function showSum(points: Point[], bounces: number): void {
       layers.push(line(b === 0 ? 'E₀' : `+ ${bounceName(b)}`, points.map((point) => [point.ao, point.mean[b]]), color,
         { stack: 'sum', areaStyle: { color, opacity: points.length < 4 ? 0 : 0.55 }, lineStyle: { width: 0.6, color: t.card } }));
     }
-    const sum = points.map((point): Pair => [point.ao, point.mean.reduce((a, b) => a + b, 0)]);
+    const sum = points.map((point): Pair => [point.ao, point.storedBounces]);
     return {
       legend: { show: false },
       tooltip: tooltip({ formatter: (at: { axisValue: number }[]) => {
@@ -140,7 +144,7 @@ function showSum(points: Point[], bounces: number): void {
       ],
     };
   });
-  const sums = points.map((point) => point.mean.reduce((a, b) => a + b, 0));
+  const sums = points.map((point) => point.storedBounces);
   const worst = sums.reduce((far, sum, i) => (Math.abs(sum - 1) > Math.abs(sums[far] - 1) ? i : far), 0);
   place('sum').append(plot.element);
   if (points.length > 0)

@@ -1,4 +1,4 @@
-// What the page is about: the data that `hemibake report` put into it (src/report/html_data.cpp).
+// Reads the data that `hemibake report` put into the page (src/report/html_json.cpp).
 
 export type Rgb = [number, number, number];
 
@@ -8,6 +8,8 @@ export interface Bin {
   count: number;
   mean?: number[]; // E_b/π at albedo 1; absent where count is 0
   spread?: number[]; // standard deviation over the bin's texels
+  all_bounces?: number[]; // E/π at each of plot_albedos, with the tail after the last bounce; not in a sweep
+  stored_bounces?: number; // Σ E_b/π at albedo 1
 }
 
 export interface Curves {
@@ -76,6 +78,7 @@ export interface Report {
   version: string;
   title: string;
   albedo: Rgb;
+  plot_albedos: number[];
   bake: Bake | null;
   curves: Curves | null;
   fits: Record<string, Fit> | null;
@@ -90,12 +93,14 @@ export interface Report {
 
 export const report: Report = JSON.parse(document.getElementById('data')!.textContent!);
 
-// A bin with texels in it, at its place on the AO axis.
+// Holds a bin with texels at its place on the AO axis.
 export interface Point {
   ao: number;
   count: number;
   mean: number[];
   spread: number[];
+  allBounces: number[];
+  storedBounces: number;
 }
 
 export function pointsOf(curves: Curves): Point[] {
@@ -106,16 +111,7 @@ export function pointsOf(curves: Curves): Point[] {
       count: bin.count,
       mean: bin.mean!,
       spread: bin.spread!,
+      allBounces: bin.all_bounces ?? [],
+      storedBounces: bin.stored_bounces ?? 0,
     }));
-}
-
-// Σ ρᵇ E_b/π of a bin, the bounces after the last stored one as a geometric series, as the fits have it
-// (fitting/fit.h, total_over_pi).
-export function totalOf(mean: number[], albedo: number): number {
-  const last = mean.length - 1;
-  let sum = 0;
-  for (let b = last; b >= 0; --b) sum = sum * albedo + mean[b];
-  if (last < 2 || mean[last] >= mean[last - 1]) return sum;
-  const ratio = (albedo * mean[last]) / mean[last - 1];
-  return sum + (mean[last] * albedo ** last * ratio) / (1 - ratio);
 }

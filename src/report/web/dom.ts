@@ -1,4 +1,4 @@
-// Elements in few words.
+// Makes elements in few words.
 
 type Child = Node | string | null | undefined | Child[];
 type Attributes = Record<string, string | number | boolean | EventListener>;
@@ -26,7 +26,7 @@ function append(parent: Node, children: Child[]): void {
   }
 }
 
-// Where a section of index.html has its content.
+// Returns the content of a section of index.html.
 export function place(id: string): HTMLElement {
   return document.querySelector(`#${id} .content`) as HTMLElement;
 }
@@ -56,7 +56,7 @@ export function table(head: string[], rows: (string | Node)[][], caption: string
   );
 }
 
-// Exponents as people read them.
+// Writes a number with its exponent as people read it.
 export function number(value: number | null | undefined, digits = 4): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
   const size = Math.abs(value);
@@ -73,12 +73,12 @@ function superscript(value: number): string {
 
 const kSubscripts = '₀₁₂₃₄₅₆₇₈₉';
 
-// E₁₂
+// Writes E₁₂ for bounce 12.
 export function bounceName(bounce: number, letter = 'E'): string {
   return letter + String(bounce).replace(/\d/g, (digit) => kSubscripts[Number(digit)]);
 }
 
-// "0.2461 ± 0.0074"
+// Writes "0.2461 ± 0.0074".
 export function withError(value: number, error: number | null): string {
   if (error === null || error === undefined) return number(value);
   const decimals = Math.min(Math.max(1 - Math.floor(Math.log10(error || 1)), 0), 8);
@@ -87,7 +87,7 @@ export function withError(value: number, error: number | null): string {
 
 let groups = 0;
 
-// One of several, as radio buttons.
+// Makes radio buttons.
 export function choice(
   label: string,
   options: [string, string][],
@@ -113,4 +113,26 @@ export function choice(
 export function checkbox(label: string, checked: boolean, change: (checked: boolean) => void): HTMLElement {
   const input = h('input', { type: 'checkbox', checked, onchange: () => change(input.checked) });
   return h('label', { class: 'checkbox' }, input, h('span', {}, label));
+}
+
+export interface SliderOptions {
+  label: string;
+  spoken?: string; // its name for a screen reader; the label where there is none
+  name: string; // of its input, and its class
+  range: [number, number, number]; // lowest, highest, step
+  value: number;
+  text(value: number): string;
+  change(value: number): void;
+}
+
+// Makes a slider with its value beside it.
+export function slider({ label, spoken = label, name, range: [min, max, step], value, text, change }: SliderOptions): HTMLElement {
+  const output = h('output', {}, text(value));
+  const input = h('input', { type: 'range', min, max, step, value, name, 'aria-label': spoken });
+  input.addEventListener('input', () => {
+    output.textContent = text(Number(input.value));
+    input.setAttribute('aria-valuetext', output.textContent);
+    change(Number(input.value));
+  });
+  return h('label', { class: `slider ${name}` }, h('span', {}, label), input, output);
 }

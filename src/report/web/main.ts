@@ -1,7 +1,9 @@
-// The page. The picture comes last: it is the most work.
+// Fills the page. The picture comes last: it is the most work.
 
+import { charts } from './chart';
 import { showChecks, showSettings } from './checks';
 import { showCurves } from './curves';
+import { models } from './model';
 import { showModels } from './models';
 import { showPictures } from './pictures';
 import { showShader } from './shader';
@@ -10,6 +12,9 @@ import { showSurface } from './surface';
 import { showSweep } from './sweep';
 import { showTrade } from './trade';
 import { showViewer } from './viewer';
+
+// For a console, and for the test that holds the page against the library.
+Object.assign(window, { hemibake: { charts, models } });
 
 showTitle();
 showSummary();

@@ -1,5 +1,5 @@
-// The models as functions, for plots, the probe and the picture without WebGL; formulas: src/model/closed_forms.h.
-// Here in double precision; the picture's shader has the text that `hemibake export` writes.
+// Evaluates the models for plots, the probe and the picture without WebGL (formulas: src/model/closed_forms.h); a
+// browser test holds them against the library. The picture's shader is the text that `hemibake export` writes.
 
 import { report, type ModelData } from './data';
 
@@ -21,21 +21,21 @@ function boundedEscape(c: Record<string, number>, ao: number): number {
   return c.q * (1 - (c.d * (1 - direct)) / (1 + 3 * direct));
 }
 
-export function publishedDirect(c: Record<string, number>, ao: number): number {
+export function mayaux2018Direct(c: Record<string, number>, ao: number): number {
   return ao * (1 + c.k * (1 - ao) ** c.e);
 }
 
-export function publishedFirstBounce(c: Record<string, number>, ao: number): number {
+export function mayaux2018FirstBounce(c: Record<string, number>, ao: number): number {
   return c.A * ao * (1 - ao) ** 1.5 * Math.exp(-c.B * ao ** 0.25);
 }
 
 function guardedDirect(c: Record<string, number>, ao: number): number {
-  return Math.min(Math.max(publishedDirect(c, ao), 0), 1);
+  return Math.min(Math.max(mayaux2018Direct(c, ao), 0), 1);
 }
 
 function guardedEscape(c: Record<string, number>, ao: number): number {
   const blocked = 1 - guardedDirect(c, ao);
-  const first = publishedFirstBounce(c, ao);
+  const first = mayaux2018FirstBounce(c, ao);
   return first < blocked ? Math.max(first / blocked, kSmallestEscape) : 1;
 }
 
@@ -52,7 +52,7 @@ export function makeModel(data: ModelData): Model {
   return { data, direct, escape, total };
 }
 
-// F_b of a model: F₁ τ^(b−1) from the first bounce on.
+// Returns F_b of a model: F₁ τ^(b−1) from the first bounce on.
 export function bounceOf(model: Model, bounce: number, ao: number): number {
   if (bounce === 0) return model.direct(ao);
   const escape = model.escape(ao);
@@ -61,7 +61,7 @@ export function bounceOf(model: Model, bounce: number, ao: number): number {
 
 export const models: Model[] = report.models.map(makeModel);
 
-// The model that all plots and the picture show; listeners are told when another is chosen.
+// Keeps the model that all plots and the picture show, and calls the listeners when another is chosen.
 let current = models[0];
 const listeners: (() => void)[] = [];
 

@@ -1,9 +1,9 @@
-// The models against the data: direct light, all bounces at each albedo, and the ratio of the bounces.
+// Draws the models against the data: direct light, all bounces at each albedo, and the ratio of the bounces.
 
 import { aoAxis, axis, band, chart, curve, dashed, grid, legend, line, type Option, type Pair } from './chart';
-import { pointsOf, report, totalOf, type Point } from './data';
+import { pointsOf, report, type Point } from './data';
 import { h, number, place, say } from './dom';
-import { currentModel, models, publishedDirect, publishedFirstBounce, type Model } from './model';
+import { currentModel, models, mayaux2018Direct, mayaux2018FirstBounce, type Model } from './model';
 import { ramp, theme } from './theme';
 
 const kNoCurves = 'The folder has no curves to hold the models against; the models are shown alone.';
@@ -16,7 +16,7 @@ export function showModels(): void {
   showRatio(points);
 }
 
-// The model chosen in ink.
+// Gives the chosen model the colour of ink.
 function colorOf(model: Model): string {
   const t = theme();
   return model === currentModel() ? t.ink : model.data.id === 'notes' ? t.faint : t.third;
@@ -47,10 +47,10 @@ function showDirect(points: Point[]): void {
 function showAlbedos(points: Point[]): void {
   place('albedo').append(chart('All bounces together over ambient occlusion at albedos from 0 to 1 in steps of 0.1, data and model', 480, () => {
     const series: Option[] = [];
-    for (let step = 0; step <= 10; ++step) {
-      const albedo = step / 10, color = ramp(1 - albedo);
+    for (const [step, albedo] of report.plot_albedos.entries()) {
+      const color = ramp(1 - albedo);
       if (points.length > 0)
-        series.push(line(`data, ρ = ${albedo.toFixed(1)}`, points.map((point) => [point.ao, totalOf(point.mean, albedo)]), color,
+        series.push(line(`data, ρ = ${albedo.toFixed(1)}`, points.map((point) => [point.ao, point.allBounces[step]]), color,
           { lineStyle: { width: 1, color }, showSymbol: true, symbolSize: points.length < 4 ? 7 : 3, z: 2 }));
       series.push(line(`model, ρ = ${albedo.toFixed(1)}`, curve((ao) => currentModel().total(ao, albedo)), color,
         { lineStyle: { width: 2.5, color }, z: 3 }));
@@ -67,9 +67,9 @@ function showAlbedos(points: Point[]): void {
     h('span', {}, 'ρ = 0'), h('span', { class: 'colors' }), h('span', {}, 'ρ = 1')));
 }
 
-// Where F₀ of the published formula is 1 below α = 1: the pole of its τ.
+// Returns the α below 1 where F₀ of the formula of 2018 is 1: the pole of its τ.
 function poleOf(constants: Record<string, number>): number | null {
-  const excess = (ao: number) => publishedDirect(constants, ao) - 1;
+  const excess = (ao: number) => mayaux2018Direct(constants, ao) - 1;
   let high = 1 - 1e-9, low = 0.5;
   for (let ao = 0.999; ao > 0.5; ao -= 0.001)
     if (excess(ao) > 0) {
@@ -88,7 +88,7 @@ function poleOf(constants: Record<string, number>): number | null {
 function showRatio(points: Point[]): void {
   const notes = models.find((model) => model.data.id === 'notes')!.data.constants;
   const pole = poleOf(notes);
-  const raw = (ao: number) => 1 - publishedFirstBounce(notes, ao) / (1 - publishedDirect(notes, ao));
+  const raw = (ao: number) => 1 - mayaux2018FirstBounce(notes, ao) / (1 - mayaux2018Direct(notes, ao));
   place('ratio').append(chart('Ratio tau of each bounce to the one before over ambient occlusion, with the pole of the published formula', 400, () => {
     const t = theme();
     const measured = points.filter((point) => point.mean.length > 2 && point.mean[1] > 1e-6 && point.mean[0] < 1);

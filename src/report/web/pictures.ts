@@ -1,4 +1,4 @@
-// The pictures that `hemibake render` wrote.
+// Shows the pictures that `hemibake render` wrote.
 
 import { report } from './data';
 import { h, place, say } from './dom';

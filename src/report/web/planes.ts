@@ -1,4 +1,4 @@
-// The planes of the bake, as src/report/html_planes.cpp packed them.
+// Unpacks the planes of the bake (src/report/html_planes.cpp packs them).
 
 import type { PlaneList } from './data';
 
@@ -12,7 +12,7 @@ export interface Planes {
   irradiance: Uint16Array[];
 }
 
-// Unpacks one plane after another, so that the page stays alive. progress: the share done.
+// Unpacks one plane after another, so that the page stays alive. progress: takes the share done.
 export async function readPlanes(list: PlaneList, progress: (share: number) => void): Promise<Planes> {
   const planes: Planes = {
     width: list.width,
@@ -74,10 +74,14 @@ export function aoOf(planes: Planes, texel: number): number {
   return planes.ao![texel] * planes.aoStep;
 }
 
-// Σ ρᵇ E_b/π of the bounces up to `last`.
+// Returns ρᵇ E_b/π of one bounce.
+export function bounceLight(planes: Planes, texel: number, albedo: number, bounce: number): number {
+  return albedo ** bounce * planes.irradiance[bounce][texel] * planes.irradianceStep;
+}
+
+// Returns Σ ρᵇ E_b/π of the bounces up to `last`, which the reader chooses; a browser test holds it against the library.
 export function truthOf(planes: Planes, texel: number, albedo: number, last: number): number {
   let sum = 0;
-  for (let b = Math.min(last, planes.irradiance.length - 1); b >= 0; --b)
-    sum = sum * albedo + planes.irradiance[b][texel];
-  return sum * planes.irradianceStep;
+  for (let b = 0; b <= Math.min(last, planes.irradiance.length - 1); ++b) sum += bounceLight(planes, texel, albedo, b);
+  return sum;
 }

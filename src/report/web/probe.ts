@@ -1,9 +1,10 @@
-// One texel of the bake in numbers.
+// Shows one texel of the bake in numbers.
 
+import { cssColor } from './color';
 import type { Rgb } from './data';
 import { bounceName, h } from './dom';
+import type { Picture } from './picture';
 import { aoOf, truthOf, type Planes } from './planes';
-import type { Picture } from './viewer';
 
 export interface Probe {
   element: HTMLElement;
@@ -45,7 +46,7 @@ export function makeProbe(planes: Planes, picture: () => Picture): Probe {
     facts.textContent = `α ${ao.toFixed(4)}` + irradiance.slice(0, 2).map((value, b) => `   ${bounceName(b)}/π ${value.toFixed(4)}`).join('');
     rows.forEach((row, i) => {
       cells[i].forEach((cell, c) => (cell.textContent = row ? (i === 3 && row[c] >= 0 ? '+' : '') + row[c].toFixed(4).replace('-', '−') : '–'));
-      swatches[i].style.background = row && i < 3 ? swatchColor(row, albedo) : 'transparent';
+      swatches[i].style.background = row && i < 3 ? cssColor(row.map((value, c) => value * albedo[c])) : 'transparent';
     });
     if (barsOf !== texel) drawBars(bars, irradiance);
     barsOf = texel;
@@ -63,11 +64,7 @@ export function makeProbe(planes: Planes, picture: () => Picture): Probe {
   };
 }
 
-function swatchColor(light: Rgb, albedo: Rgb): string {
-  return `rgb(${light.map((value, c) => Math.round(255 * Math.min(value * albedo[c], 1) ** (1 / 2.2))).join(',')})`;
-}
-
-// The bounces of the texel, side by side.
+// Draws the bounces of the texel side by side.
 function drawBars(host: HTMLElement, irradiance: number[]): void {
   const largest = Math.max(...irradiance, 1e-9);
   while (host.children.length < irradiance.length) host.append(h('b'));

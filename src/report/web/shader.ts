@@ -1,4 +1,4 @@
-// The model as text to paste, with a button that copies it.
+// Shows the model as text to paste, with a button that copies it.
 
 import { report, type Language } from './data';
 import { choice, h, place } from './dom';
@@ -25,7 +25,7 @@ export function showShader(): void {
     code);
 }
 
-// Pages opened from disk may have no clipboard of their own: then by the selection.
+// Copies by the selection where a page opened from disk has no clipboard.
 async function copyText(text: string): Promise<boolean> {
   try {
     await navigator.clipboard.writeText(text);

@@ -1,4 +1,4 @@
-// What a person quotes.
+// Shows the numbers that a person quotes.
 
 import { report } from './data';
 import { h, number, place, table, withError } from './dom';
@@ -43,7 +43,7 @@ export function showSummary(): void {
   if (curves) host.append(errors());
 }
 
-// The bake in one sentence.
+// Describes the bake in one sentence.
 function sentence(): string {
   const s = report.bake?.settings;
   if (!s) return 'How the data were made is not known: there is no bake.exr here.';

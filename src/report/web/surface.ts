@@ -1,5 +1,5 @@
-// The surface bounce × AO × irradiance, turned by hand: quadrilaterals from far to near on a plain canvas, which needs
-// no WebGL and prints.
+// Draws the surface bounce × AO × irradiance, turned by hand: quadrilaterals from far to near on a plain canvas, which
+// needs no WebGL and prints.
 
 import { pointsOf, report, type Point } from './data';
 import { h, place, say } from './dom';
@@ -33,7 +33,9 @@ export function showSurface(): void {
     const density = Math.min(devicePixelRatio, 2);
     canvas.width = Math.max(1, Math.round(canvas.clientWidth * density));
     canvas.height = Math.max(1, Math.round(canvas.clientHeight * density));
-    paint(canvas.getContext('2d')!, canvas.width, canvas.height, density, points, report.curves!.bounces, camera);
+    const frame = makeFrame(canvas, density, points, report.curves!.bounces, camera);
+    frame.context.clearRect(0, 0, canvas.width, canvas.height);
+    for (const part of [drawBox, drawSurface, drawLabels]) part(frame);
     canvas.dataset.drawn = 'yes';
   };
   let pending = false;
@@ -78,10 +80,19 @@ export function showSurface(): void {
   place('surface').append(canvas);
 }
 
-function paint(context: CanvasRenderingContext2D, width: number, height: number, density: number,
-               points: Point[], bounces: number, camera: Camera): void {
-  const t = theme();
-  const last = bounces - 1;
+// Holds a frame: what is drawn, where to, and how it is seen.
+interface Frame {
+  context: CanvasRenderingContext2D;
+  density: number; // pixels of the canvas per pixel of the page
+  points: Point[];
+  last: number; // bounce
+  top: number; // largest E/π
+  turn: [number, number]; // cosine, sine
+  project(bounce: number, ao: number, value: number): Projected; // bounce 0..last, α 0..1, E/π 0..top, in parallel
+}
+
+function makeFrame(canvas: HTMLCanvasElement, density: number, points: Point[], bounces: number, camera: Camera): Frame {
+  const last = bounces - 1, { width, height } = canvas;
   const top = Math.max(...points.map((point) => Math.max(...point.mean)));
   const [cosTurn, sinTurn] = [Math.cos(camera.turn), Math.sin(camera.turn)];
   const [cosTilt, sinTilt] = [Math.cos(camera.tilt), Math.sin(camera.tilt)];
@@ -89,44 +100,38 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number,
   const boxWidth = Math.abs(cosTurn) + Math.abs(sinTurn);
   const boxHeight = kHeight * cosTilt + boxWidth * sinTilt;
   const scale = camera.zoom * Math.min((width - 120 * density) / boxWidth, (height - 92 * density) / boxHeight);
-
-  // Bounce 0..last, α 0..1, E/π 0..top, seen in parallel.
   const project = (bounce: number, ao: number, value: number): Projected => {
     const x = bounce / last - 0.5, y = ao - 0.5, z = (value / top - 0.5) * kHeight;
     const across = x * cosTurn - y * sinTurn, away = x * sinTurn + y * cosTurn;
     return [width / 2 + across * scale, height / 2 - 14 * density - (z * cosTilt + away * sinTilt) * scale, away * cosTilt - z * sinTilt];
   };
-  const stroke = (from: Projected, to: Projected, color: string, thickness = 1) => {
-    context.strokeStyle = color;
-    context.lineWidth = thickness * density;
+  return { context: canvas.getContext('2d')!, density, points, last, top, turn: [cosTurn, sinTurn], project };
+}
+
+// Draws the lines of the floor and of the two sides behind.
+function drawBox({ context, density, last, top, turn: [cosTurn, sinTurn], project }: Frame): void {
+  const farBounce = sinTurn > 0 ? last : 0, farAo = cosTurn > 0 ? 1 : 0;
+  context.strokeStyle = theme().line;
+  context.lineWidth = density;
+  const stroke = (from: Projected, to: Projected) => {
     context.beginPath();
     context.moveTo(from[0], from[1]);
     context.lineTo(to[0], to[1]);
     context.stroke();
   };
-  const write = (text: string, at: Projected, dx: number, dy: number, color: string, bold = false) => {
-    context.font = `${bold ? 'bold ' : ''}${12 * density}px system-ui, sans-serif`;
-    context.fillStyle = color;
-    context.textAlign = 'center';
-    context.textBaseline = 'middle';
-    context.fillText(text, at[0] + dx * density, at[1] + dy * density);
-  };
-
-  context.clearRect(0, 0, width, height);
-
-  // The floor, the two walls behind, and their lines.
-  const nearBounce = sinTurn > 0 ? 0 : last, farBounce = last - nearBounce;
-  const nearAo = cosTurn > 0 ? 0 : 1, farAo = 1 - nearAo;
   for (let i = 0; i <= 5; ++i) {
     const ao = i / 5, bounce = (i / 5) * last, value = (i / 5) * top;
-    stroke(project(0, ao, 0), project(last, ao, 0), t.line);
-    stroke(project(bounce, 0, 0), project(bounce, 1, 0), t.line);
-    stroke(project(0, farAo, value), project(last, farAo, value), t.line);
-    stroke(project(farBounce, 0, value), project(farBounce, 1, value), t.line);
-    stroke(project(bounce, farAo, 0), project(bounce, farAo, top), t.line);
-    stroke(project(farBounce, ao, 0), project(farBounce, ao, top), t.line);
+    stroke(project(0, ao, 0), project(last, ao, 0));
+    stroke(project(bounce, 0, 0), project(bounce, 1, 0));
+    stroke(project(0, farAo, value), project(last, farAo, value));
+    stroke(project(farBounce, 0, value), project(farBounce, 1, value));
+    stroke(project(bounce, farAo, 0), project(bounce, farAo, top));
+    stroke(project(farBounce, ao, 0), project(farBounce, ao, top));
   }
+}
 
+// Draws the quadrilaterals of the surface from far to near.
+function drawSurface({ context, density, points, last, top, project }: Frame): void {
   const quads: { depth: number; corners: Projected[]; value: number }[] = [];
   for (let i = 0; i + 1 < points.length; ++i)
     for (let b = 0; b < last; ++b) {
@@ -139,6 +144,7 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number,
       });
     }
   quads.sort((a, b) => b.depth - a.depth);
+  const mesh = theme().dark ? 'rgba(0,0,0,0.28)' : 'rgba(255,255,255,0.3)';
   for (const { corners, value } of quads) {
     context.beginPath();
     corners.forEach(([x, y], k) => (k === 0 ? context.moveTo(x, y) : context.lineTo(x, y)));
@@ -150,19 +156,31 @@ function paint(context: CanvasRenderingContext2D, width: number, height: number,
     context.strokeStyle = color;
     context.lineWidth = density;
     context.stroke();
-    context.strokeStyle = t.dark ? 'rgba(0,0,0,0.28)' : 'rgba(255,255,255,0.3)';
+    context.strokeStyle = mesh;
     context.lineWidth = 0.6 * density;
     context.stroke();
   }
-  // Numbers and names outside the box, to the side where their edge runs.
+}
+
+// Writes numbers and names outside the box, to the side where their edge runs.
+function drawLabels({ context, density, last, top, turn: [cosTurn, sinTurn], project }: Frame): void {
+  const { ink, faint } = theme();
+  const nearBounce = sinTurn > 0 ? 0 : last, nearAo = cosTurn > 0 ? 0 : 1, farAo = 1 - nearAo;
+  const write = (text: string, at: Projected, dx: number, dy: number, bold = false) => {
+    context.font = `${bold ? 'bold ' : ''}${12 * density}px system-ui, sans-serif`;
+    context.fillStyle = bold ? ink : faint;
+    context.textAlign = 'center';
+    context.textBaseline = 'middle';
+    context.fillText(text, at[0] + dx * density, at[1] + dy * density);
+  };
   const side = project(last / 2, nearAo, 0)[0] < project(nearBounce, 0.5, 0)[0] ? -1 : 1;
   for (let i = 0; i <= 5; ++i) {
     const bounce = (i / 5) * last, ao = i / 5;
-    write(String(Math.round(bounce)), project(bounce, nearAo, 0), side * 9, 14, t.faint);
-    write(ao.toFixed(1), project(nearBounce, ao, 0), -side * 11, 14, t.faint);
-    if (i > 0) write(((i / 5) * top).toFixed(2), project(nearBounce, farAo, (i / 5) * top), sinTurn > 0 ? -22 : 22, 0, t.faint);
+    write(String(Math.round(bounce)), project(bounce, nearAo, 0), side * 9, 14);
+    write(ao.toFixed(1), project(nearBounce, ao, 0), -side * 11, 14);
+    if (i > 0) write(((i / 5) * top).toFixed(2), project(nearBounce, farAo, (i / 5) * top), sinTurn > 0 ? -22 : 22, 0);
   }
-  write('bounce', project(last / 2, nearAo, 0), side * 44, 34, t.ink, true);
-  write('AO α', project(nearBounce, 0.5, 0), -side * 44, 34, t.ink, true);
-  write('E/π', project(nearBounce, farAo, top), 0, -16, t.ink, true);
+  write('bounce', project(last / 2, nearAo, 0), side * 44, 34, true);
+  write('AO α', project(nearBounce, 0.5, 0), -side * 44, 34, true);
+  write('E/π', project(nearBounce, farAo, top), 0, -16, true);
 }

@@ -1,4 +1,4 @@
-// The amplitude sweep: how the curves flatten at both ends.
+// Shows the amplitude sweep, whose curves flatten at both ends.
 
 import { aoAxis, axis, chart, grid, legend, line, type Option, type Pair } from './chart';
 import { pointsOf, report } from './data';

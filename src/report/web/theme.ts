@@ -1,4 +1,4 @@
-// Colours, as page.css has them for light and dark.
+// Reads the colours that page.css has for light and dark.
 
 export interface Theme {
   ink: string;
@@ -39,14 +39,14 @@ type Stops = [number, number, number][];
 const kRampLight: Stops = [[201, 68, 14], [190, 24, 93], [109, 40, 217], [37, 99, 235], [8, 145, 178]];
 const kRampDark: Stops = [[255, 170, 90], [255, 112, 166], [190, 150, 255], [110, 170, 255], [90, 220, 235]];
 
-// Along a ramp from warm (0) to cold (1) that stands out from the page.
+// Returns a colour along a ramp from warm (0) to cold (1) that stands out from the page.
 export function ramp(position: number): string {
   return mix(theme().dark ? kRampDark : kRampLight, position);
 }
 
 const kHeights: Stops = [[68, 32, 110], [60, 80, 170], [30, 130, 160], [60, 175, 120], [240, 205, 70]];
 
-// Along a ramp from dark (0) to bright (1), for heights.
+// Returns a colour along a ramp from dark (0) to bright (1), for heights.
 export function heightColor(position: number, alpha = 1): string {
   return mix(kHeights, position, alpha);
 }

@@ -1,4 +1,4 @@
-// The trade study: error against time of every tracer and estimator (src/trade/trade_file.h has the file's form).
+// Shows the trade study: error against time of every tracer and estimator (src/trade/trade_file.h has the file's form).
 
 import { axis, chart, grid, legend, line, tooltip, type Option } from './chart';
 import { report } from './data';
@@ -70,9 +70,9 @@ function option(trade: Trade, plane: string): Option {
     symbol: ['circle', 'rect', 'triangle', 'diamond'][i % 4],
     symbolSize: (_: unknown, { data }: { data: Spot }) => (data.run.representative ? 13 : 8),
   }));
-  const front = trade.fronts?.[plane] ?? [];
-  if (front.length > 0)
-    series.push(line('best at each cost', front.map((each) => [each.cpu_seconds, each.rmse]), t.ink, { step: 'end', lineStyle: { width: 1.25, color: t.ink }, z: 1, tooltip: { show: false } }));
+  const paretoFront = trade.fronts?.[plane] ?? [];
+  if (paretoFront.length > 0)
+    series.push(line('best at each cost', paretoFront.map((each) => [each.cpu_seconds, each.rmse]), t.ink, { step: 'end', lineStyle: { width: 1.25, color: t.ink }, z: 1, tooltip: { show: false } }));
   return {
     // Their marks; one under another where there is room, else to be leafed through.
     legend: legend({ icon: undefined, itemHeight: 10, ...(innerWidth > 860 ? { type: 'plain' } : {}) }),

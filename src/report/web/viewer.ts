@@ -1,54 +1,18 @@
-// The picture of the bake: what stands in which part of it, its controls, zoom and pan.
+// Shows the picture of the bake with its controls, borders, zoom and pan.
 
-import { report, type Rgb } from './data';
-import { checkbox, choice, h, number, place, say } from './dom';
-import { currentModel, models, onModelChange, chooseModel, type Model } from './model';
+import { albedoControls } from './albedo';
+import { report } from './data';
+import { checkbox, choice, h, number, place, say, slider } from './dom';
+import { chooseModel, currentModel, models, onModelChange } from './model';
+import type { Picture, Renderer, View } from './picture';
 import { readPlanes, type Planes } from './planes';
 import { makeProbe, type Probe } from './probe';
 import { makeCanvasRenderer } from './viewer_canvas';
 import { makeGlRenderer } from './viewer_gl';
 
-export type Panel = 'off' | 'model' | 'truth' | 'bounce' | 'difference' | 'difference off';
-export type View = Panel | 'compare';
-
-export interface Picture {
-  model: Model;
-  view: View;
-  albedo: Rgb;
-  exposure: number; // powers of two
-  asColor: boolean; // albedo times irradiance; else irradiance
-  lastBounce: number; // of the truth; the one shown in view `bounce`
-  range: number; // largest difference that has a colour of its own
-  originX: number; // texel at the canvas' upper left corner
-  originY: number;
-  texelsPerPixel: number;
-  dividers: [number, number]; // canvas pixels
-}
-
-// What is shown in which columns of the bake, first and one after the last.
-export function panelsOf(picture: Picture, width: number): [Panel, number, number][] {
-  if (picture.view !== 'compare') return [[picture.view, 0, width]];
-  const [a, b] = picture.dividers.map((pixel) =>
-    Math.min(Math.max(Math.round(picture.originX + pixel * picture.texelsPerPixel), 0), width));
-  return [['off', 0, a], ['model', a, b], ['truth', b, width]];
-}
-
-export interface Renderer {
-  name: string;
-  draw(picture: Picture): void;
-}
-
 const kWindowShare = 0.82;
 const kLeastSide = 240; // pixels
 const kSmallestTexelsPerPixel = 1 / 64;
-const kPresets: [string, Rgb][] = [
-  ['brick', [0.62, 0.28, 0.2]],
-  ['sand', [0.9, 0.6, 0.2]],
-  ['grass', [0.25, 0.5, 0.15]],
-  ['plaster', [0.8, 0.8, 0.78]],
-  ['snow', [0.95, 0.95, 0.97]],
-];
-
 export async function showViewer(): Promise<void> {
   const bake = report.bake;
   if (!bake) return say('see', 'The folder has no bake.exr, so there is no picture.');
@@ -144,7 +108,7 @@ class Viewer {
     this.redraw();
   }
 
-  // The whole bake in the stage.
+  // Sizes the canvas so that the whole bake is in the stage.
   private fit(): void {
     const { width, height } = this.planes;
     const room = (this.stage.parentElement as HTMLElement).clientWidth;
@@ -324,19 +288,6 @@ class Viewer {
       `picture of the bake, showing ${compare ? 'plain AO, the model and the truth side by side' : this.picture.view}`);
   }
 
-  private slider(label: string, range: [number, number, number], value: number, text: (value: number) => string,
-                 change: (value: number) => void, name: string, spoken = label): HTMLElement {
-    const [min, max, step] = range;
-    const output = h('output', {}, text(value));
-    const input = h('input', { type: 'range', min, max, step, value, name, 'aria-label': spoken });
-    input.addEventListener('input', () => {
-      output.textContent = text(Number(input.value));
-      input.setAttribute('aria-valuetext', output.textContent);
-      change(Number(input.value));
-    });
-    return h('label', { class: `slider ${name}` }, h('span', {}, label), input, output);
-  }
-
   private controls(): HTMLElement {
     const bounces = this.planes.irradiance.length;
     const views: [View, string][] = [
@@ -347,54 +298,22 @@ class Viewer {
       choice('Show', bounces > 0 ? views : views.filter(([view]) => view === 'off' || view === 'model'),
              this.picture.view, (view) => this.set({ view: view as View })),
       choice('Model', models.map((model) => [model.data.id, model.data.title]), this.picture.model.data.id, chooseModel),
-      this.albedoControls(),
-      this.slider('Exposure', [-3, 5, 0.05], 0, (value) => `${value < 0 ? '−' : '+'}${Math.abs(value).toFixed(2)} EV`,
-                  (exposure) => this.set({ exposure }), 'exposure'),
-      bounces > 1 &&
-        this.slider('Bounces', [0, bounces - 1, 1], bounces - 1, (value) => `0 … ${value}`,
-                    (lastBounce) => this.set({ lastBounce }), 'bounces') || null,
-      bounces > 0 &&
-        this.slider('Difference', [0.01, 0.3, 0.01], this.picture.range, (value) => `± ${value.toFixed(2)}`,
-                    (range) => this.set({ range }), 'range') || null,
+      albedoControls(this.picture.albedo, (albedo) => this.set({ albedo })),
+      slider({ label: 'Exposure', name: 'exposure', range: [-3, 5, 0.05], value: 0,
+               text: (value) => `${value < 0 ? '−' : '+'}${Math.abs(value).toFixed(2)} EV`, change: (exposure) => this.set({ exposure }) }),
+      bounces > 1
+        ? slider({ label: 'Bounces', name: 'bounces', range: [0, bounces - 1, 1], value: bounces - 1, text: (value) => `0 … ${value}`,
+                   change: (lastBounce) => this.set({ lastBounce }) })
+        : null,
+      bounces > 0
+        ? slider({ label: 'Difference', name: 'range', range: [0.01, 0.3, 0.01], value: this.picture.range,
+                   text: (value) => `± ${value.toFixed(2)}`, change: (range) => this.set({ range }) })
+        : null,
       checkbox('colour (albedo × light) instead of light alone', true, (asColor) => this.set({ asColor })),
     );
   }
 
-  private albedoControls(): HTMLElement {
-    let linked = false;
-    const inputs: HTMLInputElement[] = [];
-    const apply = (albedo: Rgb) => {
-      inputs.forEach((input, c) => {
-        input.value = String(albedo[c]);
-        input.nextElementSibling!.textContent = albedo[c].toFixed(2);
-      });
-      this.set({ albedo });
-    };
-    const sliders = ['Red', 'Green', 'Blue'].map((name, c) => {
-      const element = this.slider(name, [0, 1, 0.01], this.picture.albedo[c], (value) => value.toFixed(2),
-        (value) => {
-          const albedo: Rgb = [...this.picture.albedo];
-          if (linked) albedo.fill(value);
-          else albedo[c] = value;
-          apply(albedo);
-        }, name.toLowerCase(), `${name.toLowerCase()} albedo`);
-      inputs.push(element.querySelector('input')!);
-      return element;
-    });
-    return h('fieldset', { class: 'albedo' },
-      h('legend', {}, 'Albedo'),
-      h('div', { class: 'presets' }, kPresets.map(([name, albedo]) => {
-        const color = albedo.map((value) => Math.round(255 * value ** (1 / 2.2)));
-        return h('button', { type: 'button', style: `--swatch:rgb(${color.join(',')})`, onclick: () => apply([...albedo]) }, name);
-      })),
-      sliders,
-      checkbox('same in all channels', false, (checked) => {
-        linked = checked;
-        if (checked) apply([this.picture.albedo[0], this.picture.albedo[0], this.picture.albedo[0]]);
-      }));
-  }
-
-  // What the colours of a difference mean.
+  // Explains the colours of a difference.
   private scaleBar(): HTMLElement {
     const low = h('span'), high = h('span');
     const bar = h('div', { class: 'scale', role: 'img' }, low, h('span', { class: 'colors' }), high);

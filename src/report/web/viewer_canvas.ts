@@ -1,22 +1,17 @@
-// The picture without WebGL: every texel of the bake by the processor, then scaled onto the canvas.
+// Draws the picture without WebGL: every texel of the bake by the processor, then scaled onto the canvas.
 
-import type { Rgb } from './data';
-import { aoOf, truthOf, type Planes } from './planes';
-import { panelsOf, type Panel, type Picture, type Renderer } from './viewer';
-
-const kLuminance: Rgb = [0.2126, 0.7152, 0.0722];
+import { encode, kLuminance, kTooBright, kTooDark } from './color';
+import { panelsOf, type Panel, type Picture, type Renderer } from './picture';
+import { aoOf, bounceLight, truthOf, type Planes } from './planes';
 
 // sRGB bytes of 0..1 in steps of 1/4095.
-const kEncoded = Uint8ClampedArray.from({ length: 4096 }, (_, i) => {
-  const x = i / 4095;
-  return Math.round(255 * (x <= 0.0031308 ? x * 12.92 : 1.055 * x ** (1 / 2.4) - 0.055));
-});
+const kEncoded = Uint8ClampedArray.from({ length: 4096 }, (_, i) => Math.round(255 * encode(i / 4095)));
 
 export function makeCanvasRenderer(canvas: HTMLCanvasElement, planes: Planes): Renderer {
   const context = canvas.getContext('2d')!;
   const panels = new Map<Panel, { settings: string; image: HTMLCanvasElement }>();
 
-  // What the panel shows, computed again only where something in it changed.
+  // Returns what the panel shows, computed again only where something in it changed.
   const imageOf = (panel: Panel, picture: Picture): HTMLCanvasElement => {
     const settings = JSON.stringify([
       picture.model.data.id, picture.albedo, picture.exposure, picture.asColor, picture.lastBounce, picture.range,
@@ -79,7 +74,7 @@ function paint(image: HTMLCanvasElement, planes: Planes, panel: Panel, picture: 
   context.putImageData(pixels, 0, 0);
 }
 
-// Of the differences: signed.
+// Returns the light of a texel in one channel; of the differences, signed.
 export function lightOf(planes: Planes, texel: number, panel: Panel, picture: Picture, albedo: number): number {
   switch (panel) {
     case 'off':
@@ -89,7 +84,7 @@ export function lightOf(planes: Planes, texel: number, panel: Panel, picture: Pi
     case 'truth':
       return truthOf(planes, texel, albedo, picture.lastBounce);
     case 'bounce':
-      return albedo ** picture.lastBounce * planes.irradiance[picture.lastBounce][texel] * planes.irradianceStep;
+      return bounceLight(planes, texel, albedo, picture.lastBounce);
     case 'difference':
       return lightOf(planes, texel, 'model', picture, albedo) - lightOf(planes, texel, 'truth', picture, albedo);
     case 'difference off':
@@ -99,7 +94,7 @@ export function lightOf(planes: Planes, texel: number, panel: Panel, picture: Pi
 
 function paintDifference(data: Uint8ClampedArray, texel: number, difference: number): void {
   const x = Math.min(Math.max(difference, -1), 1);
-  const end = x < 0 ? [0.13, 0.4, 0.67] : [0.7, 0.09, 0.17];
+  const end = x < 0 ? kTooDark : kTooBright;
   const share = Math.abs(x) ** 0.8;
   for (let c = 0; c < 3; ++c) data[4 * texel + c] = 255 * (0.97 + (end[c] - 0.97) * share);
 }

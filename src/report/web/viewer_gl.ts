@@ -1,10 +1,10 @@
-// The picture by WebGL2.
+// Draws the picture by WebGL2.
 
+import { panelsOf, type Panel, type Picture, type Renderer } from './picture';
 import type { Planes } from './planes';
-import { panelsOf, type Panel, type Picture, type Renderer } from './viewer';
 import { kShowShader, kVertexShader, lightShader } from './viewer_shader';
 
-// null where there is no WebGL2, or the planes do not fit into a texture.
+// Returns null where there is no WebGL2 or the planes do not fit into a texture.
 export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Renderer | null {
   // Kept, so that a picture can be saved and printed.
   const context = canvas.getContext('webgl2', { alpha: true, antialias: false, depth: false, preserveDrawingBuffer: true });
@@ -32,7 +32,7 @@ export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Rende
   canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
   canvas.addEventListener('webglcontextrestored', restore);
 
-  // The columns from..to − 1 of the bake.
+  // Lights the columns from..to − 1 of the bake.
   const light = (picture: Picture, panel: Panel, from: number, to: number) => {
     if (to <= from) return;
     const key = `${picture.model.data.id} ${panel}`;
@@ -81,7 +81,7 @@ export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Rende
   };
 }
 
-// What the texels are lit into; stays bound as texture 1.
+// Makes the texture that texels are lit into; it stays bound as texture 1.
 function makeTarget(gl: WebGL2RenderingContext, width: number, height: number): WebGLFramebuffer {
   gl.activeTexture(gl.TEXTURE1);
   const texture = gl.createTexture();
@@ -125,7 +125,7 @@ function makeProgram(gl: WebGL2RenderingContext, fragment: string): Program {
   };
 }
 
-// One triangle over the whole canvas.
+// Uploads one triangle over the whole canvas.
 function uploadCorners(gl: WebGL2RenderingContext): void {
   gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
   gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([-1, -1, 3, -1, -1, 3]), gl.STATIC_DRAW);
@@ -133,7 +133,7 @@ function uploadCorners(gl: WebGL2RenderingContext): void {
   gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 0, 0);
 }
 
-// As texture 0.
+// Uploads the planes as texture 0.
 function uploadPlanes(gl: WebGL2RenderingContext, planes: Planes, layers: number): void {
   const { width, height } = planes;
   gl.activeTexture(gl.TEXTURE0);

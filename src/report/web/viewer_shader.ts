@@ -1,14 +1,15 @@
-// The picture's shaders: one lights every texel of the bake, one shows them on the canvas. The model is the very text
-// that `hemibake export --to glsl` writes.
+// Writes the picture's shaders: one lights every texel of the bake, one shows them on the canvas. The model is the very
+// text that `hemibake export --to glsl` writes.
 
-import type { Panel } from './viewer';
+import { kLuminance, kTooBright, kTooDark } from './color';
+import type { Panel } from './picture';
 
 export const kVertexShader = `#version 300 es
 in vec2 corner;
 void main() { gl_Position = vec4(corner, 0.0, 1.0); }
 `;
 
-// Lit texels, placed and scaled.
+// Places and scales lit texels.
 export const kShowShader = `#version 300 es
 precision highp float;
 uniform sampler2D lit;
@@ -24,7 +25,7 @@ void main() {
 }
 `;
 
-// What a panel shows of a texel: a statement that sets `color`.
+// Statements that set `color` of a texel.
 const kPanels: Record<Panel, string> = {
   off: 'color = vec4(encode(shown * ao), 1.0);',
   model: 'color = vec4(encode(shown * multi_bounce_irradiance(ao, albedo)), 1.0);',
@@ -88,8 +89,8 @@ vec3 encode(vec3 light) {
 }
 
 vec4 signed_color(vec3 difference) {
-  float x = clamp(dot(difference, vec3(0.2126, 0.7152, 0.0722)) / range, -1.0, 1.0);
-  vec3 end = x < 0.0 ? vec3(0.13, 0.40, 0.67) : vec3(0.70, 0.09, 0.17);
+  float x = clamp(dot(difference, vec3(${kLuminance})) / range, -1.0, 1.0);
+  vec3 end = x < 0.0 ? vec3(${kTooDark}) : vec3(${kTooBright});
   return vec4(mix(vec3(0.97), end, pow(abs(x), 0.8)), 1.0);
 }
 

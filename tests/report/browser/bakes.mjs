@@ -1,8 +1,8 @@
 // The folders that the pages are made of, by the real binary.
 
 import { execFileSync, spawnSync } from 'node:child_process';
-import { copyFileSync, mkdirSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { basename, join } from 'node:path';
 
 export const kAlbedo = [0.9, 0.6, 0.2];
 export const kOtherAlbedo = [0.35, 1, 0];
@@ -63,7 +63,28 @@ export function makeBakes(hemibake, folder, pictures) {
   };
 }
 
-// As src/trade/trade_file.h describes it.
+// Makes a page of each stored curve and its fits. Returns for each the bins that the library says, and its models as
+// tables: {ID: [{ao, direct, bounce_ratio, 'total_0.0', …}]}.
+export function makeCurvePages(hemibake, folder, stored) {
+  const run = (...options) => execFileSync(hemibake, options, { cwd: folder, encoding: 'utf8' });
+  const table = (file) => {
+    const [head, ...rows] = readFileSync(join(folder, file), 'utf8').trim().split('\n').map((line) => line.split(','));
+    return rows.map((row) => Object.fromEntries(row.map((cell, i) => [head[i], Number(cell)])));
+  };
+  return readdirSync(stored).filter((file) => file.endsWith('.csv')).map((file) => {
+    const name = `curves_${basename(file, '.csv')}`;
+    mkdirSync(join(folder, name));
+    copyFileSync(join(stored, file), join(folder, name, 'curves.csv'));
+    run('fit', join(name, 'curves.csv'), '-o', join(name, 'fit.json'));
+    const models = Object.fromEntries(['bounded', 'published'].map((model) => {
+      run('export', join(name, 'fit.json'), '--to', 'csv', '--model', model, '-o', join(name, 'model.csv'));
+      return [model, table(join(name, 'model.csv'))];
+    }));
+    return { name, models, bins: JSON.parse(run('report', name, '--json')).bins };
+  });
+}
+
+// Makes a trade study as src/trade/trade_file.h describes it.
 function tradeStudy() {
   const error = (rmse) => ({ rmse, bias: rmse / 3, max: 4 * rmse, p99: 3 * rmse });
   const runs = [64, 256].flatMap((rays) =>

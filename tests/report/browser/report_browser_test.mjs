@@ -10,7 +10,7 @@ import { dirname, join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
-import { kAlbedo, kOtherAlbedo, makeBakes } from './bakes.mjs';
+import { kAlbedo, kOtherAlbedo, makeBakes, makeCurvePages } from './bakes.mjs';
 import { choose, encode, kChromium, launch, open, pixelOf, probeOf, setAlbedo, setSlider, settle, waitForPicture } from './page.mjs';
 
 const [hemibake, packages] = process.argv.slice(2).map((path) => resolve(path));
@@ -26,11 +26,17 @@ const kPatience = 5000;  // ms
 // Two units of the last of the four digits shown: their rounding, and the error of the codes.
 const kDigits = 2e-4;
 
+// Six digits of a plot, cut by the library.
+const kPlotDigits = 5e-6;
+// Rounding of doubles, and of 1 − F₀ near α = 1, which the page takes as a difference.
+const kModelRounding = 1e-12;
+
+const project = join(dirname(fileURLToPath(import.meta.url)), '../../..');
 const folder = mkdtempSync(join(tmpdir(), 'hemibake-report-'));
 let browser, bakes;
 
 before(async () => {
-  bakes = makeBakes(hemibake, folder, join(dirname(fileURLToPath(import.meta.url)), '../../../.readme'));
+  bakes = makeBakes(hemibake, folder, join(project, '.readme'));
   browser = await launch(packages);
 });
 
@@ -134,6 +140,44 @@ for (const [hash, renderer] of [['', 'WebGL2'], ['#canvas', 'canvas']])
     assert.deepEqual(page.complaints, []);
     await page.close();
   });
+
+test('every bin of every stored curve is what the library says', async () => {
+  const pages = makeCurvePages(hemibake, folder, join(project, 'fits/curves'));
+  assert.ok(pages.length >= 4);
+  for (const { name, bins, models } of pages) {
+    const page = await open(browser, fileOf(name));
+    const shown = await page.evaluate((tables) => {
+      const { charts, models } = window.hemibake;
+      const seriesOf = (label, series) => charts.find(({ element }) => element.ariaLabel.startsWith(label)).make().series
+        .filter((each) => each.name.startsWith(series)).map((each) => each.data);
+      const rowOf = (model, { ao }) => [ao, model.direct(ao), 1 - model.escape(ao), ...[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10].map((r) => model.total(ao, r / 10))];
+      return {
+        totals: seriesOf('All bounces together', 'data, ρ = '),
+        sum: seriesOf('Sum of all bounces', 'sum of all bounces')[0],
+        models: Object.fromEntries(Object.entries(tables).map(([id, rows]) =>
+          [id, rows.map((row) => rowOf(models.find(({ data }) => data.id === id), row))])),
+      };
+    }, models);
+    assert.equal(shown.totals.length, 11);
+    const near = ([ao, value], bin, expected, what) =>
+      assert.ok(Math.abs(ao - bin.ao) <= kPlotDigits && Math.abs(value - expected) <= kPlotDigits * Math.max(expected, 1e-3),
+        `${name}, α = ${bin.ao}, ${what}: ${value}, expected ${expected} ± ${kPlotDigits} of it`);
+    bins.forEach((bin, j) => {
+      near(shown.sum[j], bin, bin.stored_bounces, 'stored bounces');
+      shown.totals.forEach((points, r) => near(points[j], bin, bin.all_bounces[r], `albedo ${r / 10}`));
+      // No tail brings more light than there is: the total exceeds π only where the stored bounces do.
+      assert.ok(bin.all_bounces[10] <= Math.max(1, bin.stored_bounces) + kModelRounding);
+    });
+    for (const [id, rows] of Object.entries(models))
+      rows.forEach((row, i) => {
+        const expected = [row.ao, row.direct, row.bounce_ratio, ...Object.keys(row).filter((key) => key.startsWith('total')).map((key) => row[key])];
+        shown.models[id][i].forEach((value, k) => assert.ok(Math.abs(value - expected[k]) <= kModelRounding,
+          `${name}, ${id} at α = ${row.ao}, column ${k}: ${value}, expected ${expected[k]} ± ${kModelRounding}`));
+      });
+    assert.deepEqual(page.complaints, []);
+    await page.close();
+  }
+});
 
 test('comparison: each part shows its own light, and the borders move', async () => {
   const page = await open(browser, fileOf('whole'));

@@ -7,7 +7,7 @@
 #include "core/constants.h"
 #include "core/error.h"
 #include "fitting/fit.h"
-#include "fitting/published.h"
+#include "fitting/mayaux2018.h"
 #include "model/closed_forms.h"
 
 namespace hemibake {
@@ -26,8 +26,8 @@ Curves exact_curves(double k, double e, double a, double b) {
   return curves;
 }
 
-std::vector<CurvePoint> points_of(const Curves& curves, int bounce, Weights weights = Weights::none) {
-  return curve_points(curves, bounce, Abscissa::center, weights);
+std::vector<CurvePoint> points_of(const Curves& curves, int bounce, Weights weights = Weights::kNone) {
+  return curve_points(curves, bounce, Abscissa::kCenter, weights);
 }
 
 TEST(PublishedFit, RecoversExactParameters) {
@@ -56,8 +56,8 @@ void expect_honest_errors(Weights weights) {
   for (int t = 0; t < trials; ++t) {
     Curves curves = exact_curves(k, e, a, b);
     for (CurveBin& bin : curves.bins) {
-      bin.count = weights == Weights::none ? 100 : 10 + 400 * bin.ao_low;
-      const double stddev = weights == Weights::standard_error ? 0.05 + 0.3 * bin.ao_high : 0.2;
+      bin.count = weights == Weights::kNone ? 100 : 10 + 400 * bin.ao_low;
+      const double stddev = weights == Weights::kStandardError ? 0.05 + 0.3 * bin.ao_high : 0.2;
       for (BounceStatistics& bounce : bin.bounces) {
         bounce.stddev = stddev;
         bounce.mean += stddev / std::sqrt(bin.count) * normal(random);
@@ -76,10 +76,10 @@ void expect_honest_errors(Weights weights) {
   for (const int count : within) EXPECT_NEAR(static_cast<double>(count) / trials, expected, tolerance);
 }
 
-TEST(PublishedFit, StandardErrorsCoverUnweighted) { expect_honest_errors(Weights::none); }
-TEST(PublishedFit, StandardErrorsCoverWeightedByCount) { expect_honest_errors(Weights::count); }
+TEST(PublishedFit, StandardErrorsCoverUnweighted) { expect_honest_errors(Weights::kNone); }
+TEST(PublishedFit, StandardErrorsCoverWeightedByCount) { expect_honest_errors(Weights::kCount); }
 TEST(PublishedFit, StandardErrorsCoverWeightedByStandardError) {
-  expect_honest_errors(Weights::standard_error);
+  expect_honest_errors(Weights::kStandardError);
 }
 
 TEST(PublishedFit, EmptyBinsAreSkipped) {
@@ -95,19 +95,19 @@ TEST(PublishedFit, WeightsHaveMeanOneAndFollowTheirSource) {
   Curves curves = exact_curves(0.8, 1.05, 38, 3.8);
   curves.bins[3].count = 900;
   curves.bins[4].count = 1;
-  const std::vector<CurvePoint> by_count = points_of(curves, 0, Weights::count);
+  const std::vector<CurvePoint> by_count = points_of(curves, 0, Weights::kCount);
   double sum = 0;
   for (const CurvePoint& point : by_count) sum += point.weight;
   EXPECT_NEAR(sum, 100, 1e-10);
   EXPECT_NEAR(by_count[3].weight / by_count[0].weight, 9, 1e-12);
-  const std::vector<CurvePoint> by_error = points_of(curves, 0, Weights::standard_error);
+  const std::vector<CurvePoint> by_error = points_of(curves, 0, Weights::kStandardError);
   EXPECT_EQ(by_error.size(), 99U);  // one texel has no spread
   EXPECT_NEAR(by_error[3].weight / by_error[0].weight, 9, 1e-12);
 }
 
 TEST(PublishedFit, PublishedAbscissaIsOneBinFurther) {
   const std::vector<CurvePoint> points =
-      curve_points(exact_curves(0.8, 1, 38, 3.8), 1, Abscissa::published, Weights::none);
+      curve_points(exact_curves(0.8, 1, 38, 3.8), 1, Abscissa::kMayaux2018, Weights::kNone);
   EXPECT_DOUBLE_EQ(points.front().ao, 1 / 99.0);
   EXPECT_DOUBLE_EQ(points[98].ao, 1);
   EXPECT_DOUBLE_EQ(points.back().ao, 100 / 99.0);
@@ -119,7 +119,7 @@ TEST(PublishedFit, TooFewPointsAreRefused) {
   EXPECT_THROW(fit_direct(points_of(curves, 0)), InputError);
   EXPECT_THROW(fit_direct({}), InputError);
   curves.has_counts = false;
-  EXPECT_THROW(points_of(curves, 0, Weights::count), InputError);
+  EXPECT_THROW(points_of(curves, 0, Weights::kCount), InputError);
 }
 
 TEST(PublishedFit, WhatThePointsDoNotDetermineIsAFailedCheck) {

@@ -1,4 +1,4 @@
-#include "fitting/published.h"
+#include "fitting/mayaux2018.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,155 @@
+#include "report/html_json.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/constants.h"
+#include "model/shader_text.h"
+
+namespace hemibake {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Enough digits for a plot, and half the size of a number that reads back exactly.
+Json rounded(double value) {
+  if (!std::isfinite(value)) return nullptr;
+  return std::stod(fmt::format("{:.6g}", value));
+}
+
+Json rounded(const std::optional<double>& value) { return value ? rounded(*value) : Json(); }
+
+template <class Values>
+Json rounded_list(const Values& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(rounded(value));
+  return list;
+}
+
+// bounces: number of those written. totals: none, or of each bin.
+Json json_from_curves(const Curves& curves, int bounces, std::span<const BinTotals> totals) {
+  Json bins = Json::array();
+  for (size_t j = 0; j < curves.bins.size(); ++j) {
+    const CurveBin& bin = curves.bins[j];
+    Json& entry = bins.emplace_back(
+        Json{{"low", rounded(bin.ao_low)}, {"high", rounded(bin.ao_high)}, {"count", bin.count}});
+    if (bin.count == 0) continue;
+    entry["mean"] = entry["spread"] = Json::array();
+    for (int b = 0; b < bounces; ++b) {
+      entry["mean"].push_back(rounded(bin.bounces[b].mean / kPi));
+      entry["spread"].push_back(rounded(bin.bounces[b].stddev / kPi));
+    }
+    if (totals.empty()) continue;
+    entry["all_bounces"] = rounded_list(totals[j].all_bounces);
+    entry["stored_bounces"] = rounded(totals[j].stored_bounces);
+  }
+  return {{"bounces", bounces}, {"has_counts", curves.has_counts}, {"bins", bins}};
+}
+
+Json json_from_texel_errors(const TexelErrors& errors, std::span<const ReportModel> models) {
+  Json json = {{"albedo", errors.albedo}};
+  for (size_t m = 0; m <= models.size(); ++m)
+    json[m < models.size() ? models[m].id : "off"] = rounded(errors.rms[m]);
+  return json;
+}
+
+Json json_from_bake(const BakeFile& file, std::span<const ReportModel> models, const PackedPlanes& planes,
+                    const ReportData& data) {
+  Json json = {{"width", file.bake.width}, {"height", file.bake.height}};
+  json["mean_ao"] = rounded(data.means.ao);
+  json["mean_irradiance"] = rounded_list(data.means.irradiance);
+  json["mean_total"] = rounded(data.means.total);
+  json["mean_residual"] = rounded(data.means.residual);
+  json["worst_residual"] = rounded(data.means.worst_residual);
+  json["texel_errors"] = Json::array();
+  for (const TexelErrors& errors : data.texel_errors)
+    json["texel_errors"].push_back(json_from_texel_errors(errors, models));
+  Json list = Json::array();
+  for (const PackedPlane& plane : planes.planes) list.push_back({{"name", plane.name}, {"step", plane.step}});
+  json["planes"] = {{"width", planes.width},
+                    {"height", planes.height},
+                    {"stride", planes.stride},
+                    {"list", list},
+                    {"ao_error", planes.ao_error},
+                    {"irradiance_error_over_pi", planes.irradiance_error_over_pi},
+                    {"total_error_over_pi", planes.total_error_over_pi}};
+  json["settings"] = file.provenance;
+  return json;
+}
+
+Json json_from_score(const Score& score) {
+  return {{"rms", rounded(score.rms)}, {"max", rounded(score.max_error)}};
+}
+
+Json constants_of(const ShaderModel& model) {
+  if (const auto* m = std::get_if<BoundedModel>(&model))
+    return {{"k0", m->k0}, {"k1", m->k1}, {"q", m->q}, {"d", m->d}};
+  const Mayaux2018Model& m = std::get<GuardedModel>(model).formulas;
+  return {{"k", m.k}, {"e", m.e}, {"A", m.a}, {"B", m.b}};
+}
+
+Json json_from_model(const ReportModel& model, const Score* score) {
+  const auto text = [&](Language language) { return shader_text(model.model, language, model.origin); };
+  return {{"id", model.id},
+          {"title", model.title},
+          {"constants", constants_of(model.model)},
+          {"shader",
+           {{"glsl", text(Language::kGlsl)}, {"hlsl", text(Language::kHlsl)}, {"cpp", text(Language::kCpp)}}},
+          {"score", score ? json_from_score(*score) : Json()}};
+}
+
+}  // namespace
+
+Json json_from_report(const ReportFolder& folder, std::span<const ReportModel> models,
+                      const PackedPlanes& planes, const ReportData& data) {
+  Json json = {{"version", HEMIBAKE_VERSION}, {"title", data.title}, {"albedo", data.albedo}};
+  json["plot_albedos"] = kPlotAlbedos;
+  json["bake"] = folder.bake ? json_from_bake(*folder.bake, models, planes, data) : Json();
+  json["curves"] =
+      folder.curves ? json_from_curves(*folder.curves, folder.curves->bounce_count, data.totals) : Json();
+  json["fits"] = folder.fits ? json_from_fits(*folder.fits) : Json();
+  json["models"] = Json::array();
+  for (size_t m = 0; m < models.size(); ++m)
+    json["models"].push_back(json_from_model(models[m], data.scores.empty() ? nullptr : &data.scores[m]));
+  json["other_models"] = Json::array();
+  for (const OtherModel& other : data.other_models)
+    json["other_models"].push_back({{"title", other.title}, {"score", json_from_score(other.score)}});
+  json["check"] = folder.check;
+  json["run"] = folder.run;
+  json["trade"] = folder.trade;
+  json["pictures"] = Json::array();
+  for (const ReportPicture& picture : folder.pictures)
+    json["pictures"].push_back({{"name", picture.name}, {"here", !picture.png.empty()}});
+  json["sweep"] = Json::array();
+  for (const SweepCurves& step : folder.sweep)
+    json["sweep"].push_back(
+        {{"amplitude_m", step.amplitude_m},
+         {"curves", json_from_curves(step.curves, std::min(step.curves.bounce_count, 2), {})}});
+  return json;
+}
+
+Json json_from_probes(std::span<const ReportProbe> probes, std::span<const ReportModel> models) {
+  Json list = Json::array();
+  for (const ReportProbe& probe : probes) {
+    Json& json = list.emplace_back(
+        Json{{"x", probe.x}, {"y", probe.y}, {"ao", probe.ao}, {"irradiance", probe.irradiance}});
+    for (size_t m = 0; m < models.size(); ++m) json["models"][models[m].id] = probe.models[m];
+    json["truth"] = probe.truth;
+  }
+  return list;
+}
+
+Json json_from_totals(const Curves& curves, std::span<const BinTotals> totals) {
+  Json list = Json::array();
+  for (size_t j = 0; j < totals.size(); ++j)
+    if (curves.bins[j].count > 0)
+      list.push_back({{"ao", bin_center(curves.bins[j])},
+                      {"all_bounces", totals[j].all_bounces},
+                      {"stored_bounces", totals[j].stored_bounces}});
+  return list;
+}
+
+}  // namespace hemibake
