@@ -89,15 +89,14 @@ struct Names {
 
 template <class Maker>
 class EveryTracer : public testing::Test {};
-TYPED_TEST_SUITE(EveryTracer,
-                 (testing::Types<Embree<PatchKind::kFacets>, Embree<PatchKind::kTexels>,
-                                 Slice<PatchKind::kFacets>, Slice<PatchKind::kTexels>, March>),
-                 Names);
+using Makers = testing::Types<Embree<PatchKind::kFacets>, Embree<PatchKind::kTexels>,
+                              Slice<PatchKind::kFacets>, Slice<PatchKind::kTexels>, March>;
+TYPED_TEST_SUITE(EveryTracer, Makers, Names);
 
 template <class Maker>
 class EveryNodeTracer : public testing::Test {};
-TYPED_TEST_SUITE(EveryNodeTracer, (testing::Types<Embree<PatchKind::kFacets>, Slice<PatchKind::kFacets>>),
-                 Names);
+using NodeMakers = testing::Types<Embree<PatchKind::kFacets>, Slice<PatchKind::kFacets>>;
+TYPED_TEST_SUITE(EveryNodeTracer, NodeMakers, Names);
 
 // Checks the invariants of a row with form factors.
 void expect_valid(const Row& row, const Tracer& tracer) {
@@ -109,7 +108,9 @@ void expect_valid(const Row& row, const Tracer& tracer) {
   for (size_t i = 0; i < row.links.size(); ++i) {
     ASSERT_LT(row.links[i].patch, tracer.patch_set().count);
     ASSERT_GE(row.links[i].weight, 0);
-    if (i > 0) ASSERT_LT(row.links[i - 1].patch, row.links[i].patch);
+    if (i > 0) {
+      ASSERT_LT(row.links[i - 1].patch, row.links[i].patch);
+    }
   }
 }
 
@@ -135,7 +136,9 @@ TYPED_TEST(EveryTracer, FlatGroundIsExactlyOpen) {
           EXPECT_EQ(row.direct_over_pi, 1);
           EXPECT_TRUE(row.links.empty());
           // A hundred directions balance to 0.1 rad.
-          if (rays == 100) EXPECT_GT(row.bent_normal.z, std::cos(0.1));
+          if (rays == 100) {
+            EXPECT_GT(row.bent_normal.z, std::cos(0.1));
+          }
         }
       }
     }
