@@ -1,6 +1,5 @@
 #include "bake/target_error.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "support/maps.h"
@@ -23,13 +22,12 @@ TargetOptions slice_target(const Surface& surface, double error) {
   return options;
 }
 
-LightTransport bake(const Surface& surface, const TargetOptions& options, int rays, uint64_t seed) {
+LightTransport trace(const TargetOptions& options, int rays, uint64_t seed) {
   return trace_surface(*options.make_tracer(rays, seed), options.with_light);
 }
 
 // Over the whole map, against a bake with many azimuths and bounces.
-double true_error(const Surface& surface, const TargetOptions& options, const LightTransport& seen,
-                  int bounces) {
+double true_error(const TargetOptions& options, const LightTransport& seen, int bounces) {
   const auto planes_of = [](const LightTransport& v, int count) {
     RunPlanes planes;
     planes.uniform = v.visible_fraction;
@@ -40,7 +38,7 @@ double true_error(const Surface& surface, const TargetOptions& options, const Li
     planes.first_bounce = {};
     return planes;
   };
-  const RunPlanes truth = planes_of(bake(surface, options, 301, 7), 200);
+  const RunPlanes truth = planes_of(trace(options, 301, 7), 200);
   double worst = 0;
   for (const auto& error : errors_of(planes_of(seen, bounces), truth))
     if (error) worst = std::max(worst, error->rmse);
@@ -52,12 +50,12 @@ void expect_reached(const Surface& surface, double error) {
   const TargetOptions options = slice_target(surface, error);
   const TargetChoice choice = choose_for_target(surface, options);
   ASSERT_TRUE(choice.reachable);
-  const LightTransport chosen = bake(surface, options, choice.rays, 99);
-  const double reached = true_error(surface, options, chosen, choice.bounces);
-  EXPECT_LE(reached, 1.25 * error) << explain(choice, options);
+  const LightTransport chosen = trace(options, choice.rays, 99);
+  const double reached = true_error(options, chosen, choice.bounces);
+  EXPECT_LE(reached, 1.25 * error) << choice.rays << " rays, " << choice.bounces << " bounces";
   // Half as many would not have done: what was chosen is at most twice the cheapest.
-  EXPECT_GT(true_error(surface, options, bake(surface, options, choice.rays / 2, 99), choice.bounces), error)
-      << explain(choice, options);
+  EXPECT_GT(true_error(options, trace(options, choice.rays / 2, 99), choice.bounces), error)
+      << choice.rays << " rays, " << choice.bounces << " bounces";
   // What the bake says of itself, from a sample: within the chance of 12 % that 36 blocks leave, at three.
   const double stated = measure_reached(surface, chosen, choice.bounces, options).worst();
   EXPECT_NEAR(stated / reached, 1, 0.4);
@@ -78,7 +76,7 @@ TEST(TargetError, OfSkyAloneNeedsNoBounces) {
   const TargetChoice choice = choose_for_target(surface, options);
   EXPECT_EQ(choice.bounces, 0);
   EXPECT_GT(choice.rays, 0);
-  EXPECT_EQ(explain(choice, options).find("bounces"), std::string::npos);
+  EXPECT_FALSE(choice.with_light);
 }
 
 TEST(TargetError, SmallerOnesTakeMore) {
@@ -96,7 +94,7 @@ TEST(TargetError, FlatGroundTakesTheFewest) {
   const TargetChoice choice = choose_for_target(surface, options);
   EXPECT_EQ(choice.rays, options.fewest_rays);
   EXPECT_EQ(choice.bounces, 1);
-  EXPECT_THAT(explain(choice, options), testing::HasSubstr("the fewest there are"));
+  EXPECT_LT(choice.pilot.size(), 2u);
 }
 
 TEST(TargetError, SaysWhereItCannotBeReached) {
@@ -106,7 +104,6 @@ TEST(TargetError, SaysWhereItCannotBeReached) {
   const TargetChoice choice = choose_for_target(surface, options);
   EXPECT_FALSE(choice.reachable);
   EXPECT_EQ(choice.rays, 8);
-  EXPECT_THAT(explain(choice, options), testing::HasSubstr("not enough"));
 }
 
 }  // namespace

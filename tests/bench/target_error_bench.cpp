@@ -14,7 +14,6 @@
 #include "tracers/slice/slice.h"
 #include "trade/reference.h"
 #include "trade/scored_run.h"
-#include "transport/bounces.h"
 
 namespace hemibake {
 namespace {
@@ -28,17 +27,10 @@ struct Case {
 };
 
 // Largest rms error of α, E₀/π and E/π over the albedos, mean over the held-out seeds.
-double error_with(const Surface& surface, const TargetOptions& options, int rays, int bounces,
-                  const RunPlanes& truth) {
+double error_with(const TargetOptions& options, int rays, int bounces, const RunPlanes& truth) {
   double sum = 0;
   for (const uint64_t seed : kHeldOutSeeds) {
-    const LightTransport seen = trace_surface(*options.make_tracer(rays, seed), true);
-    RunPlanes planes;
-    BounceOptions bounce;
-    bounce.bounces = bounces;
-    add_bounces(bounce_light(seen, bounce).irradiance, planes);
-    planes.uniform = seen.visible_fraction;
-    planes.cosine = seen.direct_over_pi;
+    RunPlanes planes = trace_planes(*options.make_tracer(rays, seed), bounces).planes;
     planes.first_bounce = {};
     double worst = 0;
     for (const auto& error : errors_of(planes, truth))
@@ -49,12 +41,11 @@ double error_with(const Surface& surface, const TargetOptions& options, int rays
 }
 
 // The fewest rays below `chosen` in steps of a tenth that keep the error; `chosen` where none does.
-int fewest_rays(const Surface& surface, const TargetOptions& options, const TargetChoice& choice,
-                const RunPlanes& truth) {
+int fewest_rays(const TargetOptions& options, const TargetChoice& choice, const RunPlanes& truth) {
   int fewest = choice.rays;
   while (fewest > 1) {
     const int fewer = std::min(fewest - 1, static_cast<int>(std::ceil(0.9 * fewest)));
-    if (error_with(surface, options, fewer, choice.bounces, truth) > options.error) break;
+    if (error_with(options, fewer, choice.bounces, truth) > options.error) break;
     fewest = fewer;
   }
   return fewest;
@@ -82,8 +73,8 @@ void run(int side, double error) {
         return slices ? make_slice_tracer(surface, by_slices) : make_embree_tracer(surface, by_rays);
       };
       const TargetChoice choice = choose_for_target(surface, options);
-      const double reached = error_with(surface, options, choice.rays, choice.bounces, truth);
-      const int fewest = fewest_rays(surface, options, choice, truth);
+      const double reached = error_with(options, choice.rays, choice.bounces, truth);
+      const int fewest = fewest_rays(options, choice, truth);
       fmt::print("{:16} {:6}: {:4} rays, {:3} bounces, reached {:.5f} = {:.2f} x; fewest {:4}: {:.2f} x\n",
                  c.name, slices ? "slice" : "embree", choice.rays, choice.bounces, reached, reached / error,
                  fewest, static_cast<double>(choice.rays) / fewest);
