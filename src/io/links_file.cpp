@@ -199,18 +199,25 @@ std::array<uint64_t, 2> read_shape(hid_t group, const std::string& name) {
   return shape;
 }
 
+// Where a block of rows lies in the matrix that is read.
+struct BlockPlace {
+  const std::string& name;  // of the matrix
+  uint64_t columns, links;  // of the matrix
+  uint64_t first_row, first_link;
+};
+
 // Sets the row begins, relative to the block, from absolute ends.
-void set_row_begins(BlockRows& rows, const std::vector<uint64_t>& ends, uint64_t position, uint64_t first_row,
-                    const FormFactorMatrix& links, uint64_t count, const std::string& name) {
+void set_row_begins(BlockRows& rows, const std::vector<uint64_t>& ends, const BlockPlace& place) {
   rows.row_begin.assign(1, 0);
-  uint64_t previous = position;
+  uint64_t previous = place.first_link;
   for (size_t row = 0; row < ends.size(); ++row) {
-    if (ends[row] < previous || ends[row] > count || ends[row] - previous > links.columns)
-      refuse(fmt::format("row {} of {} goes from link {} to {} of {}", first_row + row, name, previous,
-                         ends[row], count));
+    if (ends[row] < previous || ends[row] > place.links || ends[row] - previous > place.columns)
+      refuse(fmt::format("row {} of {} goes from link {} to {} of {}", place.first_row + row, place.name,
+                         previous, ends[row], place.links));
     previous = ends[row];
-    if (previous - position > UINT32_MAX) refuse(fmt::format("{} has too many links in a row", name));
-    rows.row_begin.push_back(static_cast<uint32_t>(previous - position));
+    if (previous - place.first_link > UINT32_MAX)
+      refuse(fmt::format("{} has too many links in a row", place.name));
+    rows.row_begin.push_back(static_cast<uint32_t>(previous - place.first_link));
   }
 }
 
@@ -258,7 +265,7 @@ FormFactorMatrix read_matrix(hid_t file, const std::string& name) {
     throw_if_cancelled();
     const uint64_t first_row = b * FormFactorMatrix::kRowsPerBlock;
     row_begins.extract(ends, std::min<uint64_t>(FormFactorMatrix::kRowsPerBlock, rows - first_row));
-    set_row_begins(block_rows, ends, position, first_row, links, indices.size(), name);
+    set_row_begins(block_rows, ends, {name, columns, indices.size(), first_row, position});
     indices.extract(block_rows.columns, block_rows.row_begin.back());
     weights.extract(block_rows.weights, block_rows.row_begin.back());
     check_block(block_rows, first_row, links, name);

@@ -37,7 +37,7 @@ struct Planes {
   double cpu_seconds;                           // of tracing
 };
 
-Planes trace(const Tracer& tracer, const Surface& surface, bool with_links) {
+Planes trace(const Tracer& tracer, bool with_links) {
   const double start = process_cpu_seconds();
   const LightTransport seen = trace_surface(tracer, with_links);
   Planes planes{seen.visible_fraction.values, seen.direct_over_pi.values, {}, process_cpu_seconds() - start};
@@ -54,14 +54,14 @@ Planes slices(const Surface& surface, int azimuths, bool with_links, uint64_t se
   SliceOptions options;
   options.azimuths = azimuths;
   options.seed = seed;
-  return trace(*make_slice_tracer(surface, options), surface, with_links);
+  return trace(*make_slice_tracer(surface, options), with_links);
 }
 
 Planes rays(const Surface& surface, int count, DirectionSet set, bool with_links) {
   RayOptions options;
   options.rays = count;
   options.directions = set;
-  return trace(*make_embree_tracer(surface, options), surface, with_links);
+  return trace(*make_embree_tracer(surface, options), with_links);
 }
 
 double seconds_at_wanted_error(const std::vector<Measured>& runs) {

@@ -110,7 +110,6 @@ void measure(const MapKind& kind, int side, const Setting& setting, Numbers& num
   const Surface surface = make_map(kind, side);
   const double start = process_cpu_seconds();
   const auto tracer = setting.make_tracer(surface);
-  const PatchKind patches = tracer->patch_set().kind;
   const LightTransport seen = trace_surface(*tracer, setting.with_links);
   numbers.cpu_seconds = process_cpu_seconds() - start;
   numbers.rays = seen.counts.rays;
