@@ -36,8 +36,9 @@ double allowed_bytes(const BakeSettings& settings) {
 void refuse_beyond_memory(const BakeSettings& settings, const BakePlan& plan) {
   const double needed = static_cast<double>(plan.memory_bytes()), allowed = allowed_bytes(settings);
   if (needed <= allowed) return;
-  throw InputError(fmt::format("the bake needs {:.3g} GiB, expected at most the {:.3g} GiB {}", needed / kGib,
-                               allowed / kGib, settings.memory_gib ? "allowed" : "of this machine"));
+  throw SettingError(fmt::format("the bake needs {:.3g} GiB, expected at most the {:.3g} GiB of {}",
+                                 needed / kGib, allowed / kGib,
+                                 settings.memory_gib ? "{memory}" : "this machine"));
 }
 
 TargetOptions target_options(const LoadedMap& map, const BakeSettings& settings) {

@@ -38,10 +38,10 @@ LoadedMap load_map(const MapSettings& settings, NormalLength lengths) {
   LoadedMap map;
   map.amplitude_m = settings.amplitude_m;
   map.surface = read_surface(settings, map.lowest_m);
-  map.sha256 = hash_files(settings);
   if (settings.normals_from == NormalSource::kFaces)
     map.surface.normals = angle_weighted_normals(map.surface);
   if (settings.normals_from == NormalSource::kMap) read_normals(settings, lengths, map);
+  map.sha256 = hash_files(settings);
   return map;
 }
 

@@ -67,43 +67,46 @@ void apply_mayaux2018(MapSettings& map, BakeSettings& settings, const IsGiven& g
 
 void validate_target_error(const BakeSettings& settings, const IsGiven& given) {
   if (!settings.target_error) {
-    if (settings.explain) throw SettingError("explain", "explains target-error, expected it too");
+    if (settings.explain) throw SettingError("{explain}: explains {target-error}, expected it too");
     return;
   }
   if (settings.tracer == TracerKind::kMarch)
-    throw SettingError("target-error",
-                       "a march has errors that rays do not mend, expected tracer embree or slice");
+    throw SettingError(
+        "{target-error}: a march has errors that rays do not mend, expected {tracer} embree or slice");
   if (settings.max_distance_m || settings.cone_degrees < 180)
-    throw SettingError("target-error",
-                       "is against the whole hemisphere, expected neither max-distance nor cone");
+    throw SettingError(
+        "{target-error}: is against the whole hemisphere, expected neither {max-distance} nor {cone}");
   for (const char* chosen : {"rays", "bounces"})
-    if (given(chosen)) throw SettingError(chosen, "is chosen by target-error, expected one of the two");
+    if (given(chosen))
+      throw SettingError(
+          fmt::format("{{{}}}: is chosen by {{target-error}}, expected one of the two", chosen));
 }
 
 void validate_tracer(const BakeSettings& settings) {
   if (settings.tracer == TracerKind::kMarch && settings.patch_kind == PatchKind::kFacets)
-    throw SettingError("patches", "a march knows no facets, expected texels with tracer march");
+    throw SettingError("{patches}: a march knows no facets, expected texels with {tracer} march");
   if (settings.tracer != TracerKind::kSlice) return;
   if (*settings.rays > kMaxAzimuths)
-    throw SettingError("rays", fmt::format("{} azimuths, expected at most {} with tracer slice",
-                                           *settings.rays, kMaxAzimuths));
+    throw SettingError(fmt::format("{{rays}}: {} azimuths, expected at most {} with {{tracer}} slice",
+                                   *settings.rays, kMaxAzimuths));
   if (settings.cone_degrees < 180)
-    throw SettingError("cone", "slices serve the whole hemisphere, expected 180 with tracer slice");
+    throw SettingError("{cone}: slices serve the whole hemisphere, expected 180 with {tracer} slice");
 }
 
 void validate_normals(const MapSettings& map, const BakeSettings& settings, const IsGiven& given) {
   const bool has_map = map.normals_from == NormalSource::kMap;
   if (has_map && map.normal_map.empty())
-    throw SettingError("normals-from", "a normal map has a file, expected normals FILE");
+    throw SettingError("{normals-from}: a normal map has a file, expected {normals} FILE");
   if (has_map && !map.normal_y)
-    throw InputError(map.normal_map.string() +
-                     ": the direction of its green channel is not known, expected normal-y up or down");
+    throw SettingError(
+        "the direction of its green channel is not known, expected {normal-y} up or {normal-y} down",
+        map.normal_map.string());
   if (!has_map && map.normal_y)
-    throw SettingError("normal-y", "there is no normal map, expected normals FILE with it");
+    throw SettingError("{normal-y}: there is no normal map, expected {normals} FILE with it");
   if (has_map && given("normals-from"))
-    throw SettingError("normals-from", "normals come from a normal map already, expected one of the two");
+    throw SettingError("{normals-from}: normals come from a normal map already, expected one of the two");
   if (settings.normal_length == NormalLength::kStored && (!has_map || settings.tracer != TracerKind::kMarch))
-    throw SettingError("normal-length", "stored lengths need normals and tracer march, expected both");
+    throw SettingError("{normal-length}: stored lengths need {normals} and {tracer} march, expected both");
 }
 
 }  // namespace
@@ -248,7 +251,7 @@ void validate(const MapSettings& map, const BakeSettings& settings, const IsGive
   validate_tracer(settings);
   validate_normals(map, settings, given);
   if (settings.converge && !settings.wants(BakeOutput::kIrradiance))
-    throw SettingError("converge", "irradiance is not among outputs, expected it there");
+    throw SettingError("{converge}: irradiance is not among {outputs}, expected it there");
 }
 
 }  // namespace hemibake

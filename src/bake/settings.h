@@ -83,14 +83,6 @@ struct BakeSettings {
   bool needs_form_factors() const;
 };
 
-// A setting that does not go with another. The message begins with the setting's name.
-class SettingError : public InputError {
- public:
-  SettingError(std::string name, const std::string& message)
-      : InputError(name + ": " + message), setting(std::move(name)) {}
-  std::string setting;
-};
-
 // The fields refer to `settings`, which must outlive them.
 std::vector<Field> map_fields(MapSettings& settings);
 std::vector<Field> bake_fields(BakeSettings& settings);
@@ -102,7 +94,7 @@ using IsGiven = std::function<bool(const std::string& name)>;
 // rays, directions and patches.
 void resolve_defaults(MapSettings& map, BakeSettings& settings, const IsGiven& given);
 
-// Throws SettingError for combinations that make no sense. The settings are resolved.
+// Throws SettingError (core/error.h) for combinations that make no sense. The settings are resolved.
 void validate(const MapSettings& map, const BakeSettings& settings, const IsGiven& given);
 
 }  // namespace hemibake

@@ -84,7 +84,7 @@ int run_command_line(int argc, char** argv) {
     const auto parsed = parse_command_line(argc, argv, kCommands);
     return parsed ? run(*parsed, context_of(*parsed, argc, argv)) : 0;
   } catch (const SettingError& error) {
-    return fail(kExitBadInput, std::string("--") + error.what());
+    return fail(kExitBadInput, error.with_prefix("--"));
   } catch (const InputError& error) {
     return fail(kExitBadInput, error.what());
   } catch (const CheckError& error) {

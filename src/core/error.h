@@ -13,6 +13,23 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// An input error that names settings, each in braces in the message: "{rays}: is chosen by {target-error}".
+// what() has them as plain words; whoever has other words for them, as a command line has, asks for these.
+class SettingError : public InputError {
+ public:
+  // file: put before the message, "FILE: …", where it is about one.
+  explicit SettingError(const std::string& message, const std::string& file = "")
+      : InputError(text(message, file, "")), message_(message), file_(file) {}
+  // Returns the error with the file it is about.
+  SettingError in_file(const std::string& file) const { return SettingError(message_, file); }
+  // Returns the message with `prefix` before every setting's name.
+  std::string with_prefix(const std::string& prefix) const { return text(message_, file_, prefix); }
+
+ private:
+  static std::string text(const std::string& message, const std::string& file, const std::string& prefix);
+  std::string message_, file_;
+};
+
 // A check or a fit that failed on usable input: exit 1.
 class CheckError : public std::runtime_error {
  public:

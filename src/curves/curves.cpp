@@ -24,9 +24,9 @@ std::string texel_name(const Grid<float>& grid, size_t i) {
 
 void check_planes(const Bake& bake) {
   const Grid<float>& ao = bake.visible_fraction;
-  if (ao.empty()) throw InputError("no channel ao, expected a bake with --outputs ao,irradiance");
+  if (ao.empty()) throw InputError("no channel ao, expected a bake with ao and irradiance among its outputs");
   if (bake.irradiance.empty()) {
-    throw InputError("no channel irradiance.00, expected a bake with --outputs ao,irradiance");
+    throw InputError("no channel irradiance.00, expected a bake with ao and irradiance among its outputs");
   }
   for (size_t i = 0; i < ao.size(); ++i) {
     if (!(ao[i] >= -kAoRounding && ao[i] <= 1 + kAoRounding)) {

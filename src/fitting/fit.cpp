@@ -63,10 +63,10 @@ struct BinPosition {
 std::vector<BinPosition> usable_bins(const Curves& curves, Abscissa abscissa, Weights weights) {
   if (weights != Weights::kNone && !curves.has_counts) {
     throw InputError(fmt::format(
-        "curves without counts, expected columns count and E00_stddev for --weights {}", to_string(weights)));
+        "curves without counts, expected columns count and E00_stddev for weights {}", to_string(weights)));
   }
   if (abscissa == Abscissa::kMayaux2018 && curves.bins.size() < 2) {
-    throw InputError("1 bin, expected at least 2 for --abscissa published");
+    throw InputError("1 bin, expected at least 2 for the published abscissa");
   }
   std::vector<BinPosition> usable;
   const double last = static_cast<double>(curves.bins.size()) - 1;

@@ -35,7 +35,7 @@ std::array<const Fit*, 2> expect_fits(std::span<const NamedFit> fits, ModelKind 
     found[i] = find_fit(fits, wanted.fits[i]);
     if (!found[i])
       throw InputError(
-          fmt::format("no fit {}, expected one from 'hemibake fit --model {}'", wanted.fits[i], wanted.name));
+          fmt::format("no fit {}, expected the fits of model '{}'", wanted.fits[i], wanted.name));
   }
   return found;
 }

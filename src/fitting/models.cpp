@@ -74,7 +74,7 @@ std::vector<NamedFit> fit_model(const std::string& name, const Curves& curves, A
     }
     return fits;
   }
-  throw InputError(fmt::format("no model '{}', expected one of those in --help", name));
+  throw InputError(fmt::format("no model '{}', expected one of fit_models", name));
 }
 
 std::vector<std::string> fit_warnings(const std::vector<NamedFit>& fits) {

@@ -12,6 +12,8 @@ template <class Work>
 auto with_file_context(const std::filesystem::path& path, Work work) {
   try {
     return work();
+  } catch (const SettingError& error) {
+    throw error.in_file(path.string());
   } catch (const InputError& error) {
     throw InputError(path.string() + ": " + error.what());
   } catch (const CheckError& error) {

@@ -23,7 +23,7 @@ Surface make_surface(Grid<float> heights, double size_m, double amplitude_m, Edg
     throw InputError(fmt::format("the map has {} texels, expected at most {}", heights.size(), kMaxTexels));
   if (edge == Edge::kOpen && (heights.width < 2 || heights.height < 2))
     throw InputError(
-        fmt::format("{}x{} texels span no surface with open edges, expected at least 2x2 (or --edge wrap)",
+        fmt::format("{}x{} texels span no surface with open edges, expected at least 2x2 (or wrapping edges)",
                     heights.width, heights.height));
   if (!(size_m >= kMinSizeM && size_m <= kMaxSizeM))
     throw InputError(fmt::format("size {} m, expected {} to {} m", size_m, kMinSizeM, kMaxSizeM));

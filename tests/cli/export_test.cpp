@@ -76,7 +76,7 @@ TEST_F(Export, TableHoldsTheModel) {
 TEST_F(Export, UnusableFitsAreRefused) {
   ASSERT_EQ(run("fit c.csv -o published.json --model published").exit_code, 0);
   expect_failure("export published.json --to glsl -o out.txt",
-                 "published.json: no fit bounded_F0, expected one from 'hemibake fit --model bounded'");
+                 "published.json: no fit bounded_F0, expected the fits of model 'bounded'");
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_bytes(folder_ / "f.json"));
   json["bounded_tau"]["parameters"]["q"]["value"] = 1.5;
   write_bytes(folder_ / "bad.json", json.dump());

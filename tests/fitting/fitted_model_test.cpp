@@ -55,7 +55,7 @@ TEST(FittedModel, NamesWhatIsMissingOrOutOfRange) {
   fits.pop_back();
   EXPECT_FALSE(has_model(fits, ModelKind::kBounded));
   EXPECT_EQ(error_of(fits, ModelKind::kBounded),
-            "no fit bounded_tau, expected one from 'hemibake fit --model bounded'");
+            "no fit bounded_tau, expected the fits of model 'bounded'");
   EXPECT_TRUE(has_model(fits, ModelKind::kMayaux2018));
 }
 

@@ -22,8 +22,16 @@ interface Run {
   models?: Record<string, Record<string, TradeError>>;
 }
 
+interface Series {
+  name: string;
+  plane: string;
+  slope: number | null;
+  points: [number, number][];
+}
+
 interface Trade {
   effort?: string;
+  series?: Series[];
   planes?: Record<string, string>;
   runs: Run[];
   fronts?: Record<string, { id: string; model: string; cpu_seconds: number; rmse: number }[]>;
@@ -37,13 +45,19 @@ export function showTrade(): void {
   const planes = Object.keys(trade.fronts ?? { ao: 0, direct: 0 });
   let plane = planes[0];
   const plot = chart('Error against processor seconds of every tracer and estimator, with the best at each cost', 460, () => option(trade, plane));
+  const convergence = trade.series?.length
+    ? chart('Error against rays, azimuths or taps of every series of runs', 420, () => convergenceOption(trade.series!, plane))
+    : null;
   place('trade').append(
     planes.length > 1
       ? choice('Error of', planes.map((name) => [name, names[name] ?? `all light, albedo ${Number(name.replace('light.', '')) / 100}`]), plane,
-          (value) => { plane = value; plot.draw(); })
+          (value) => { plane = value; plot.draw(); convergence?.draw(); })
       : '',
     plot.element,
     h('p', { class: 'note' }, 'Each mark is a run, the large ones those of the table; lower and farther left is better. The line is the best error to be had at each cost.'),
+    ...(convergence
+      ? [convergence.element, h('p', { class: 'note' }, 'Runs that differ in one setting only. A slope of −1 halves the error with twice the rays.')]
+      : []),
     runs(trade, planes));
 }
 
@@ -86,6 +100,21 @@ function option(trade: Trade, plane: string): Option {
     xAxis: axis('processor seconds', { type: 'log' }),
     yAxis: axis('rms error', { type: 'log', nameGap: 60 }),
     series,
+  };
+}
+
+// Draws error against effort, a line per series, with the exponent of its power law in the legend.
+function convergenceOption(all: Series[], plane: string): Option {
+  const shown = all.filter((each) => each.plane === plane && each.points.length > 0);
+  return {
+    legend: legend({ icon: undefined, itemHeight: 10, ...(innerWidth > 860 ? { type: 'plain' } : {}) }),
+    grid: grid({ left: 84, top: innerWidth > 860 ? 72 : 44 }),
+    tooltip: tooltip({ trigger: 'item' }),
+    xAxis: axis('rays, azimuths or taps per texel', { type: 'log' }),
+    yAxis: axis('rms error', { type: 'log', nameGap: 60 }),
+    series: shown.map((each, i) =>
+      line(each.slope === null ? each.name : `${each.name}: slope ${each.slope.toFixed(2)}`, each.points,
+        ramp(shown.length > 1 ? i / (shown.length - 1) : 0), { symbol: 'circle', symbolSize: 7, showSymbol: true })),
   };
 }
 

@@ -25,8 +25,8 @@ constexpr std::array kKinds = {
     SyntheticKindInfo{SyntheticKind::kNoise, "noise", "fractal gradient noise, hills down to grain", {}},
     SyntheticKindInfo{SyntheticKind::kFlat, "flat", "flat ground", {}},
     SyntheticKindInfo{SyntheticKind::kBowl, "bowl",
-                      "spherical-cap pit of polar half-angle --angle in flat ground", 60},
-    SyntheticKindInfo{SyntheticKind::kGroove, "groove", "V-grooves along y, walls --angle off the vertical",
+                      "spherical-cap pit of polar half-angle ANGLE in flat ground", 60},
+    SyntheticKindInfo{SyntheticKind::kGroove, "groove", "V-grooves along y, walls ANGLE off the vertical",
                       45},
     SyntheticKindInfo{
         SyntheticKind::kCanyon, "canyon", "flat floor between two walls along y, one texel wide", {}},
