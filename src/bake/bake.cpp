@@ -134,7 +134,7 @@ BakeResult bake(const PreparedBake& prepared) {
     result.reached =
         measure_reached(surface, transport, settings.bounces, target_options(*prepared.map, settings));
   keep_planes(surface, transport, result);
-  if (settings.keep_form_factors) result.transport = std::move(transport);
+  if (settings.keep_transport) result.transport = std::move(transport);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.cpu_seconds = process_cpu_seconds() - cpu_start;
   return result;

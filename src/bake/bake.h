@@ -37,7 +37,7 @@ struct BakeResult {
   std::optional<ErrorEstimate> errors;  // where there were form factors and a bounce
   std::optional<TargetChoice> choice;
   std::optional<TargetErrors> reached;      // with a target error
-  std::optional<LightTransport> transport;  // where settings.keep_form_factors
+  std::optional<LightTransport> transport;  // where settings.keep_transport
   size_t planned_bytes = 0;
   double seconds = 0, cpu_seconds = 0, trace_cpu_seconds = 0;
 };

@@ -16,7 +16,7 @@ LightTransport retrace(const MapSettings& map_settings, const BakeSettings& sett
   BakeSettings only_tracing = settings;
   only_tracing.outputs.clear();
   only_tracing.target_error.reset();
-  only_tracing.keep_form_factors = true;
+  only_tracing.trace_form_factors = only_tracing.keep_transport = true;
   return *bake(load_map(map_settings, settings.normal_length), only_tracing, context).transport;
 }
 

@@ -113,7 +113,7 @@ bool BakeSettings::wants(BakeOutput output) const {
 }
 
 bool BakeSettings::needs_form_factors() const {
-  return keep_form_factors || (wants(BakeOutput::kIrradiance) && (bounces > 0 || converge));
+  return trace_form_factors || (wants(BakeOutput::kIrradiance) && (bounces > 0 || converge));
 }
 
 std::vector<Field> map_fields(MapSettings& s) {

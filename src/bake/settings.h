@@ -72,13 +72,14 @@ struct BakeSettings {
   std::optional<double> memory_gib;  // absent: what the machine has
 
   // Not on the command line.
-  bool keep_form_factors = false;      // in the result
+  bool trace_form_factors = false;     // although no bounce needs them
+  bool keep_transport = false;         // in the result
   bool limit_memory = true;            // plan first, spill or refuse what does not fit; false: just go
   bool estimate_errors = true;         // where there are form factors and a bounce
   std::filesystem::path spill_folder;  // empty: the current one
 
   bool wants(BakeOutput output) const;
-  // Whether form factors are traced: for bounces, or to be kept.
+  // Returns whether form factors are traced: for bounces, or because they are asked for.
   bool needs_form_factors() const;
 };
 

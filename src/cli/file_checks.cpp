@@ -32,7 +32,7 @@ std::optional<Value> entry(const Provenance& provenance, const char* name) {
 }
 
 // α² ≤ E₀/π ≤ α(2−α) holds exactly for rays of equal solid angle, whose cosines are the midpoint rule; other
-// ray sets know either fraction to N^-3/4 (FACTS.md §6).
+// ray sets know either fraction to N^-3/4.
 double bounds_tolerance(const Provenance& provenance) {
   const bool exact = entry<std::string>(provenance, "tracer") == "embree" &&
                      entry<std::string>(provenance, "directions") == "uniform" &&

@@ -1,4 +1,4 @@
-// The three ways a command ends early, each with its exit code (DESIGN.md, "Commands").
+// The three ways a command ends early.
 #pragma once
 
 #include <stdexcept>

@@ -55,7 +55,7 @@ FittedModels fit_light_models(const Curves& curves) {
   if (published.size() == 2)
     fitted.eq12 =
         Mayaux2018Model{parameter_value(published[0].fit, "k"), parameter_value(published[0].fit, "e"),
-                       parameter_value(published[1].fit, "A"), parameter_value(published[1].fit, "B")};
+                        parameter_value(published[1].fit, "A"), parameter_value(published[1].fit, "B")};
   const std::vector<NamedFit> bounded = fits_or_none("bounded", curves);
   if (bounded.size() == 2)
     fitted.bounded =

@@ -22,23 +22,24 @@ constexpr size_t kFittedBounces = 21;                // E_0 … E_20, what a bak
 
 // Up to 1024 turned azimuths, all slices lie on one grid of directions whatever their seed, so two seeds err
 // alike. Odd numbers of azimuths that differ have no direction in common.
-SliceOptions seeded_slices(int azimuths, uint64_t seed) {
-  SliceOptions options;
-  options.azimuths = azimuths;
-  if (seed >= kFirstSeed) options.azimuths += 1 + 2 * static_cast<int>(seed - kFirstSeed);
-  options.seed = seed;
-  return options;
+int odd_azimuths(int azimuths, uint64_t seed) {
+  return seed < kFirstSeed ? azimuths : azimuths + 1 + 2 * static_cast<int>(seed - kFirstSeed);
 }
 
 // Bakes with slices; keeps E_0 … E_20 of the bounces.
-TracedPlanes trace_slices(const Surface& surface, int azimuths, int bounces, uint64_t seed) {
-  TracedPlanes traced = trace_planes(*make_slice_tracer(surface, seeded_slices(azimuths, seed)), bounces);
-  traced.irradiance.resize(std::min(traced.irradiance.size(), kFittedBounces));
-  return traced;
+BakedRun bake_slices(const Surface& surface, int azimuths, int bounces, uint64_t seed) {
+  BakeSettings settings;
+  settings.tracer = TracerKind::kSlice;
+  settings.rays = odd_azimuths(azimuths, seed);
+  settings.seed = seed;
+  settings.bounces = bounces;
+  BakedRun run = bake_run(surface, settings);
+  run.irradiance.resize(std::min(run.irradiance.size(), kFittedBounces));
+  return run;
 }
 
 // Makes the bake that models are fitted to and the referee checks.
-Bake bake_of(const Surface& surface, TracedPlanes&& traced) {
+Bake bake_of(const Surface& surface, BakedRun&& traced) {
   Bake bake;
   bake.width = surface.width();
   bake.height = surface.height();
@@ -111,8 +112,10 @@ Precision precision_of(const Groups& groups, const RunPlanes& best_run) {
 }
 
 size_t link_bytes(const Surface& surface, int azimuths) {
-  const auto tracer = make_slice_tracer(surface, seeded_slices(azimuths, kFirstSeed));
-  return plan_bake(surface, *tracer, {}).link_bytes;
+  SliceOptions slices;
+  slices.azimuths = odd_azimuths(azimuths, kFirstSeed);
+  slices.seed = kFirstSeed;
+  return plan_bake(surface, *make_slice_tracer(surface, slices), {}).link_bytes;
 }
 
 std::vector<RefereeRow> check_means(const Surface& surface, const Bake& bake, bool quick) {
@@ -125,11 +128,11 @@ std::vector<RefereeRow> check_means(const Surface& surface, const Bake& bake, bo
 
 // Converges α and E₀/π: doubles the azimuths until they are enough.
 RunPlanes converge_sky(const Surface& surface, int top, ReferenceFacts& facts) {
-  const RunPlanes best_run = trace_slices(surface, top, 0, 0).planes;
+  const RunPlanes best_run = bake_slices(surface, top, 0, 0).planes;
   for (int factor = kStartFactor;; factor *= 2) {
     Groups groups;
-    groups.add_pair(trace_slices(surface, factor * top, 0, kFirstSeed).planes,
-                    trace_slices(surface, factor * top, 0, kFirstSeed + 1).planes);
+    groups.add_pair(bake_slices(surface, factor * top, 0, kFirstSeed).planes,
+                    bake_slices(surface, factor * top, 0, kFirstSeed + 1).planes);
     const Precision precision = precision_of(groups, best_run);
     if (!precision.reached && factor < kLargestFactor) continue;
     facts.azimuths_ao = factor * top;
@@ -143,14 +146,14 @@ RunPlanes converge_sky(const Surface& surface, int top, ReferenceFacts& facts) {
 RunPlanes converge_light(const Surface& surface, const ReferenceOptions& options, Bake& bake,
                          ReferenceFacts& facts) {
   const int top = top_light_azimuths(options.effort);
-  const RunPlanes best_run = trace_slices(surface, top, kTradeBounces, 0).planes;
+  const RunPlanes best_run = bake_slices(surface, top, kTradeBounces, 0).planes;
   int factor = kStartFactor;
   while (factor > 1 && link_bytes(surface, factor * top) > options.memory_bytes) factor /= 2;
   Groups groups;
   while (true) {
     const uint64_t seed = kFirstSeed + 2 * static_cast<uint64_t>(groups.pairs);
-    TracedPlanes a = trace_slices(surface, factor * top, kReferenceBounces, seed);
-    groups.add_pair(a.planes, trace_slices(surface, factor * top, kReferenceBounces, seed + 1).planes);
+    BakedRun a = bake_slices(surface, factor * top, kReferenceBounces, seed);
+    groups.add_pair(a.planes, bake_slices(surface, factor * top, kReferenceBounces, seed + 1).planes);
     bake = bake_of(surface, std::move(a));
     const Precision precision = precision_of(groups, best_run);
     const bool may_double = factor < kLargestFactor && groups.pairs == 1 &&

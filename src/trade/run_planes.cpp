@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "bake/bake.h"
 #include "core/constants.h"
-#include "transport/bounces.h"
-#include "transport/trace_surface.h"
+#include "transport/series.h"
 
 namespace hemibake {
 
@@ -16,7 +16,8 @@ const std::array<NamedPlane, kPlaneCount>& named_planes() {
     all[kFirstPlane] = {"first", "E1/pi, one bounce at albedo 1", &RunPlanes::first_bounce, 0};
     for (size_t a = 0; a < kJudgedAlbedos.size(); ++a)
       all[kLightPlanes + a] = {fmt::format("light.{:02.0f}", 100 * kJudgedAlbedos[a]),
-                               fmt::format("E/pi, all bounces at albedo {:g}", kJudgedAlbedos[a]), nullptr, a};
+                               fmt::format("E/pi, all bounces at albedo {:g}", kJudgedAlbedos[a]), nullptr,
+                               a};
     return all;
   }();
   return planes;
@@ -29,28 +30,28 @@ void add_bounces(const std::vector<Grid<float>>& irradiance, RunPlanes& planes) 
   for (float& value : planes.first_bounce.values) value /= static_cast<float>(kPi);
   for (size_t a = 0; a < kJudgedAlbedos.size(); ++a) {
     planes.all_bounces[a] = Grid<float>(irradiance[0].width, irradiance[0].height);
-    for (size_t i = 0; i < texels; ++i) {
-      double sum = 0;
-      for (size_t b = irradiance.size(); b-- > 0;)
-        sum = sum * kJudgedAlbedos[a] + static_cast<double>(irradiance[b][i]);
-      planes.all_bounces[a][i] = static_cast<float>(sum / kPi);
-    }
+    for (size_t i = 0; i < texels; ++i)
+      planes.all_bounces[a][i] = static_cast<float>(sum_bounces(irradiance, i, kJudgedAlbedos[a]) / kPi);
   }
 }
 
-TracedPlanes trace_planes(const Tracer& tracer, int bounces) {
-  LightTransport transport = trace_surface(tracer, bounces > 0);
-  TracedPlanes traced;
-  traced.planes.work = transport.counts.rays;
-  if (bounces > 0) {
-    BounceOptions options;
-    options.bounces = bounces;
-    traced.irradiance = bounce_light(transport, options).irradiance;
-    add_bounces(traced.irradiance, traced.planes);
-  }
-  traced.planes.uniform = std::move(transport.visible_fraction);
-  traced.planes.cosine = std::move(transport.direct_over_pi);
-  return traced;
+BakedRun bake_run(const Surface& surface, BakeSettings settings) {
+  settings.outputs = {BakeOutput::kAo};
+  if (settings.bounces > 0) settings.outputs.push_back(BakeOutput::kIrradiance);
+  settings.keep_transport = true;
+  settings.limit_memory = settings.estimate_errors = false;
+  MapSettings unused;
+  resolve_defaults(unused, settings, [](const std::string&) { return true; });
+  LoadedMap map;
+  map.surface = surface;
+  BakeResult baked = bake(map, settings, current_context());
+  BakedRun run;
+  run.irradiance = std::move(baked.planes.irradiance);
+  add_bounces(run.irradiance, run.planes);
+  run.planes.uniform = std::move(baked.planes.visible_fraction);
+  run.planes.cosine = std::move(baked.transport->direct_over_pi);
+  run.planes.work = baked.counts.rays;
+  return run;
 }
 
 }  // namespace hemibake

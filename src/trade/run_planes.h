@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/settings.h"
 #include "bake/target_error.h"
 #include "core/grid.h"
 
@@ -13,9 +14,9 @@ namespace hemibake {
 
 // Results of a run, one value per texel. Planes the method does not give are empty.
 struct RunPlanes {
-  Grid<float> uniform;                                        // α
-  Grid<float> cosine;                                         // E₀/π
-  Grid<float> first_bounce;                                   // E₁/π at albedo 1
+  Grid<float> uniform;                                         // α
+  Grid<float> cosine;                                          // E₀/π
+  Grid<float> first_bounce;                                    // E₁/π at albedo 1
   std::array<Grid<float>, kJudgedAlbedos.size()> all_bounces;  // E/π at each of kJudgedAlbedos
   Grid<uint8_t> known;  // 0 where the method has no answer; empty: it has one everywhere
   uint64_t work = 0;    // rays, azimuths, tree nodes, taps or height samples
@@ -43,12 +44,12 @@ const std::array<NamedPlane, kPlaneCount>& named_planes();
 // irradiance: E_0, E_1, … at albedo 1, 0..π.
 void add_bounces(const std::vector<Grid<float>>& irradiance, RunPlanes& planes);
 
-struct TracedPlanes {
+struct BakedRun {
   RunPlanes planes;
   std::vector<Grid<float>> irradiance;  // E_0 … E_bounces at albedo 1, 0..π; empty without bounces
 };
 
-// Bakes the tracer's surface. bounces: 0 traces α and E₀/π only, without links.
-TracedPlanes trace_planes(const Tracer& tracer, int bounces);
+// Bakes the surface. settings.bounces: 0 gives α and E₀/π only, without links.
+BakedRun bake_run(const Surface& surface, BakeSettings settings);
 
 }  // namespace hemibake

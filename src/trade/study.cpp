@@ -6,7 +6,6 @@
 #include "core/constants.h"
 #include "core/context.h"
 #include "core/error.h"
-#include "core/context.h"
 #include "core/progress.h"
 #include "io/table_io.h"
 #include "trade/child_process.h"

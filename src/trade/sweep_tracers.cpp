@@ -1,9 +1,7 @@
 #include <memory>
 
+#include "bake/settings.h"
 #include "surface/surface.h"
-#include "tracers/embree/embree.h"
-#include "tracers/march/march.h"
-#include "tracers/slice/slice.h"
 #include "trade/resample.h"
 #include "trade/sweep.h"
 
@@ -20,35 +18,30 @@ const char* name_of(DirectionSet directions) {
 
 const char* name_of(TexelLinks links) { return links == TexelLinks::kNearest ? "nearest" : "bilinear"; }
 
-TradeRun ray_run(const RayOptions& rays, int bounces) {
+// Describes a bake. settings: with tracer and rays.
+TradeRun tracer_run(const BakeSettings& settings) {
+  const bool slices = settings.tracer == TracerKind::kSlice, light = settings.bounces > kNoBounces;
   TradeRun run;
-  run.method = bounces > kNoBounces ? "embree-light" : "embree";
-  run.add_setting("rays", rays.rays);
-  run.add_setting("directions", name_of(rays.directions));
-  if (bounces > kNoBounces) run.add_setting("bounces", bounces);
-  if (bounces > kNoBounces && rays.patch_kind == PatchKind::kTexels)
-    run.add_setting("texel-links", name_of(rays.texel_links));
-  run.abscissa_name = "rays";
-  run.abscissa = rays.rays;
-  run.perform = [rays, bounces](const Surface& surface, const Grid<float>&) {
-    return trace_planes(*make_embree_tracer(surface, rays), bounces).planes;
+  run.method = std::string(slices ? "slice" : "embree") + (light ? "-light" : "");
+  run.abscissa_name = slices ? "azimuths" : "rays";
+  run.abscissa = *settings.rays;
+  run.add_setting(run.abscissa_name, *settings.rays);
+  if (!slices) run.add_setting("directions", name_of(settings.directions.value_or(DirectionSet::kUniform)));
+  if (light) run.add_setting("bounces", settings.bounces);
+  if (light && settings.patch_kind == PatchKind::kTexels)
+    run.add_setting("texel-links", name_of(settings.texel_links));
+  run.perform = [settings](const Surface& surface, const Grid<float>&) {
+    return bake_run(surface, settings).planes;
   };
   return run;
 }
 
-TradeRun slice_run(const SliceOptions& slices, int bounces) {
-  TradeRun run;
-  run.method = bounces > kNoBounces ? "slice-light" : "slice";
-  run.add_setting("azimuths", slices.azimuths);
-  if (bounces > kNoBounces) run.add_setting("bounces", bounces);
-  if (bounces > kNoBounces && slices.patch_kind == PatchKind::kTexels)
-    run.add_setting("texel-links", name_of(slices.texel_links));
-  run.abscissa_name = "azimuths";
-  run.abscissa = slices.azimuths;
-  run.perform = [slices, bounces](const Surface& surface, const Grid<float>&) {
-    return trace_planes(*make_slice_tracer(surface, slices), bounces).planes;
-  };
-  return run;
+BakeSettings settings_of(TracerKind tracer, int rays, int bounces) {
+  BakeSettings settings;
+  settings.tracer = tracer;
+  settings.rays = rays;
+  settings.bounces = bounces;
+  return settings;
 }
 
 TradeRun march_run(int rays) {
@@ -59,9 +52,7 @@ TradeRun march_run(int rays) {
   run.abscissa_name = "rays";
   run.abscissa = rays;
   run.perform = [rays](const Surface& surface, const Grid<float>&) {
-    MarchOptions march;
-    march.rays = rays;
-    return trace_planes(*make_march_tracer(surface, march), kNoBounces).planes;
+    return bake_run(surface, settings_of(TracerKind::kMarch, rays, kNoBounces)).planes;
   };
   return run;
 }
@@ -73,25 +64,23 @@ TradeRun cut_run(double ranges) {
   run.add_setting("rays", kCutRays);
   run.add_setting("max-distance-ranges", ranges);
   run.perform = [ranges](const Surface& surface, const Grid<float>&) {
-    RayOptions rays;
-    rays.rays = kCutRays;
+    BakeSettings settings = settings_of(TracerKind::kEmbree, kCutRays, kNoBounces);
     const double range_m = height_range_m(surface);
-    if (range_m > 0) rays.max_distance_m = ranges * range_m;
-    return trace_planes(*make_embree_tracer(surface, rays), kNoBounces).planes;
+    if (range_m > 0) settings.max_distance_m = ranges * range_m;
+    return bake_run(surface, settings).planes;
   };
   return run;
 }
 
 // Bakes the map with `factor` times as many texels a side, and resamples the planes to its own texels.
 TradeRun resolution_run(double factor, int bounces) {
-  SliceOptions slices;
-  slices.azimuths = kPlainSlices;
-  TradeRun run = slice_run(slices, bounces);
+  const BakeSettings settings = settings_of(TracerKind::kSlice, kPlainSlices, bounces);
+  TradeRun run = tracer_run(settings);
   run.method =
       std::string(factor < 1 ? "half" : "double") + "-resolution" + (bounces > kNoBounces ? "-light" : "");
-  run.perform = [slices, factor, bounces](const Surface& surface, const Grid<float>&) {
+  run.perform = [settings, factor](const Surface& surface, const Grid<float>&) {
     const Surface other = resample_surface(surface, factor);
-    RunPlanes planes = trace_planes(*make_slice_tracer(other, slices), bounces).planes;
+    RunPlanes planes = bake_run(other, settings).planes;
     for (const NamedPlane& named : named_planes())
       if (Grid<float>& plane = named.of(planes); !plane.empty())
         plane = resample_plane(plane, surface.width(), surface.height(), surface.edge);
@@ -104,10 +93,9 @@ void add_ao_runs(Effort effort, std::vector<TradeRun>& runs) {
   const bool quick = effort == Effort::kQuick;
   for (const DirectionSet directions : {DirectionSet::kUniform, DirectionSet::kCosine}) {
     for (const int count : sweep_levels(effort, 4, 4096, 64)) {
-      RayOptions rays;
-      rays.rays = count;
-      rays.directions = directions;
-      TradeRun run = ray_run(rays, kNoBounces);
+      BakeSettings settings = settings_of(TracerKind::kEmbree, count, kNoBounces);
+      settings.directions = directions;
+      TradeRun run = tracer_run(settings);
       run.series = std::string("embree ") + name_of(directions);
       run.representative = directions == DirectionSet::kUniform && count == (quick ? 64 : 256);
       runs.push_back(std::move(run));
@@ -115,9 +103,7 @@ void add_ao_runs(Effort effort, std::vector<TradeRun>& runs) {
   }
   // Azimuths are worth more than rays: a level for every doubling.
   for (int azimuths = 2; azimuths <= top_ao_azimuths(effort); azimuths *= quick ? 8 : 2) {
-    SliceOptions slices;
-    slices.azimuths = azimuths;
-    TradeRun run = slice_run(slices, kNoBounces);
+    TradeRun run = tracer_run(settings_of(TracerKind::kSlice, azimuths, kNoBounces));
     run.series = "slice";
     run.representative = azimuths == (quick ? top_ao_azimuths(effort) : kPlainSlices);
     runs.push_back(std::move(run));
@@ -139,38 +125,29 @@ void add_ao_runs(Effort effort, std::vector<TradeRun>& runs) {
 void add_light_runs(Effort effort, bool can_halve, std::vector<TradeRun>& runs) {
   const bool quick = effort == Effort::kQuick;
   for (const int count : sweep_levels(effort, 4, 1024, 16)) {
-    RayOptions rays;
-    rays.rays = count;
-    TradeRun run = ray_run(rays, kTradeBounces);
+    TradeRun run = tracer_run(settings_of(TracerKind::kEmbree, count, kTradeBounces));
     run.series = "embree-light";
     run.representative = count == (quick ? 16 : 256);
     runs.push_back(std::move(run));
   }
   for (int azimuths = 2; azimuths <= top_light_azimuths(effort); azimuths *= quick ? 4 : 2) {
-    SliceOptions slices;
-    slices.azimuths = azimuths;
-    TradeRun run = slice_run(slices, kTradeBounces);
+    TradeRun run = tracer_run(settings_of(TracerKind::kSlice, azimuths, kTradeBounces));
     run.series = "slice-light";
     run.representative = azimuths == (quick ? top_light_azimuths(effort) : kPlainSlices);
     runs.push_back(std::move(run));
   }
   const std::vector<int> bounces = quick ? std::vector<int>{1} : std::vector<int>{1, 2, 3, 5, 10, 20};
-  for (const int count : bounces) {
-    SliceOptions slices;
-    slices.azimuths = quick ? top_light_azimuths(effort) : kPlainSlices;
-    runs.push_back(slice_run(slices, count));
-  }
+  const int azimuths = quick ? top_light_azimuths(effort) : kPlainSlices;
+  for (const int count : bounces)
+    runs.push_back(tracer_run(settings_of(TracerKind::kSlice, azimuths, count)));
   for (const TexelLinks links : {TexelLinks::kNearest, TexelLinks::kBilinear}) {
-    RayOptions rays;
-    rays.rays = quick ? 16 : 256;
-    rays.patch_kind = PatchKind::kTexels;
-    rays.texel_links = links;
-    runs.push_back(ray_run(rays, kTradeBounces));
-    SliceOptions slices;
-    slices.azimuths = quick ? top_light_azimuths(effort) : kPlainSlices;
-    slices.patch_kind = PatchKind::kTexels;
-    slices.texel_links = links;
-    runs.push_back(slice_run(slices, kTradeBounces));
+    for (const TracerKind tracer : {TracerKind::kEmbree, TracerKind::kSlice}) {
+      const int rays = tracer == TracerKind::kSlice ? azimuths : quick ? 16 : 256;
+      BakeSettings settings = settings_of(tracer, rays, kTradeBounces);
+      settings.patch_kind = PatchKind::kTexels;
+      settings.texel_links = links;
+      runs.push_back(tracer_run(settings));
+    }
   }
   for (const int count : {kNoBounces, kTradeBounces}) {
     if (can_halve) runs.push_back(resolution_run(0.5, count));

@@ -27,10 +27,11 @@ struct Case {
 };
 
 // Largest rms error of α, E₀/π and E/π over the albedos, mean over the held-out seeds.
-double error_with(const TargetOptions& options, int rays, int bounces, const RunPlanes& truth) {
+double error_with(const Surface& surface, BakeSettings settings, const RunPlanes& truth) {
   double sum = 0;
   for (const uint64_t seed : kHeldOutSeeds) {
-    RunPlanes planes = trace_planes(*options.make_tracer(rays, seed), bounces).planes;
+    settings.seed = seed;
+    RunPlanes planes = bake_run(surface, settings).planes;
     planes.first_bounce = {};
     double worst = 0;
     for (const auto& error : errors_of(planes, truth))
@@ -41,11 +42,12 @@ double error_with(const TargetOptions& options, int rays, int bounces, const Run
 }
 
 // The fewest rays below `chosen` in steps of a tenth that keep the error; `chosen` where none does.
-int fewest_rays(const TargetOptions& options, const TargetChoice& choice, const RunPlanes& truth) {
-  int fewest = choice.rays;
+int fewest_rays(const Surface& surface, BakeSettings settings, double error, const RunPlanes& truth) {
+  int fewest = *settings.rays;
   while (fewest > 1) {
     const int fewer = std::min(fewest - 1, static_cast<int>(std::ceil(0.9 * fewest)));
-    if (error_with(options, fewer, choice.bounces, truth) > options.error) break;
+    settings.rays = fewer;
+    if (error_with(surface, settings, truth) > error) break;
     fewest = fewer;
   }
   return fewest;
@@ -73,8 +75,12 @@ void run(int side, double error) {
         return slices ? make_slice_tracer(surface, by_slices) : make_embree_tracer(surface, by_rays);
       };
       const TargetChoice choice = choose_for_target(surface, options);
-      const double reached = error_with(options, choice.rays, choice.bounces, truth);
-      const int fewest = fewest_rays(options, choice, truth);
+      BakeSettings settings;
+      settings.tracer = slices ? TracerKind::kSlice : TracerKind::kEmbree;
+      settings.rays = choice.rays;
+      settings.bounces = choice.bounces;
+      const double reached = error_with(surface, settings, truth);
+      const int fewest = fewest_rays(surface, settings, error, truth);
       fmt::print("{:16} {:6}: {:4} rays, {:3} bounces, reached {:.5f} = {:.2f} x; fewest {:4}: {:.2f} x\n",
                  c.name, slices ? "slice" : "embree", choice.rays, choice.bounces, reached, reached / error,
                  fewest, static_cast<double>(choice.rays) / fewest);

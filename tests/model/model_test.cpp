@@ -31,7 +31,7 @@ TEST(BoundedModel, CornerValues) {
 }
 
 TEST(BoundedModel, SphericalPitIsExact) {
-  // In a spherical cap that sees C of the sky every bounce is (1 − C) of the one before (FACTS.md §6). With q
+  // In a spherical cap that sees C of the sky every bounce is (1 − C) of the one before. With q
   // = C and d = 0 the model is that series.
   const double c = 0.75;
   const BoundedModel model{0, 0, c, 0};  // F₀ = α: at α = C

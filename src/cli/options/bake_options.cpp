@@ -31,7 +31,7 @@ std::vector<Field> surface_options(MapSettings& map) {
 }
 
 void resolve(BakeOptions& options, const Invocation& invocation) {
-  options.bake.keep_form_factors = !options.links.empty();
+  options.bake.trace_form_factors = options.bake.keep_transport = !options.links.empty();
   resolve_defaults(options.map, options.bake, invocation.given);
   validate(options.map, options.bake, invocation.given);
 }
