@@ -234,7 +234,7 @@ TEST_F(ImageIo, FullDiskIsOneLineAndLeavesNothing) {
   EXPECT_EQ(disk.count(), 0u);
 }
 
-TEST(ImageIo, CancelledLeavesNothing) {
+TEST(ImageIoCancel, LeavesNothing) {
   const TemporaryFolder folder;
   write_height_map(folder / "a.exr", Grid<float>(64, 64), Provenance::object());
   const std::atomic<bool> cancel = true;
