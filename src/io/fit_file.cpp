@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/version.h"
 #include "io/table_io.h"
 
 namespace hemibake {
@@ -96,7 +97,7 @@ FitFile fits_from_json(const Json& json, const std::filesystem::path& path) {
 std::vector<std::string> model_origin(const FitFile& file, ModelKind kind) {
   std::vector<std::string> lines = describe_fits(file.fits, kind);
   lines.insert(lines.begin(),
-               "Ambient occlusion with all bounces of light, by hemibake " HEMIBAKE_VERSION ".");
+               std::string("Ambient occlusion with all bounces of light, by hemibake ") + kVersion + ".");
   for (const char* name : {"input", "input_sha256", "command"})
     if (file.provenance.contains(name) && file.provenance[name].is_string())
       lines.push_back(fmt::format("{}: {}", name, file.provenance[name].get<std::string>()));

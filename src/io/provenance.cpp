@@ -13,6 +13,7 @@
 
 #include "core/context.h"
 #include "core/error.h"
+#include "core/version.h"
 
 namespace hemibake {
 namespace {
@@ -22,7 +23,7 @@ constexpr size_t kHashBlockBytes = size_t{1} << 20;
 }  // namespace
 
 Provenance make_provenance(std::string_view command) {
-  return {{"version", HEMIBAKE_VERSION}, {"command", valid_utf8(command)}};
+  return {{"version", kVersion}, {"command", valid_utf8(command)}};
 }
 
 Provenance make_provenance(std::string_view command, const std::filesystem::path& input) {

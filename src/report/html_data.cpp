@@ -5,6 +5,7 @@
 
 #include "core/constants.h"
 #include "core/statistics.h"
+#include "core/version.h"
 #include "fitting/fitted_model.h"
 #include "io/provenance.h"
 #include "transport/series.h"
@@ -83,11 +84,12 @@ std::vector<ReportModel> report_models(const std::optional<FitFile>& fits) {
   };
   add("bounded", "bounded model, fitted", ModelKind::kBounded);
   add("published", "formulas of 2018, fitted", ModelKind::kMayaux2018);
-  models.push_back({"notes",
-                    "formulas and constants of 2018",
-                    GuardedModel{},
-                    {"Ambient occlusion with all bounces of light, by hemibake " HEMIBAKE_VERSION ".",
-                     "Formulas and constants: B. Mayaux, Improved Ambient Occlusion, 2018."}});
+  models.push_back(
+      {"notes",
+       "formulas and constants of 2018",
+       GuardedModel{},
+       {std::string("Ambient occlusion with all bounces of light, by hemibake ") + kVersion + ".",
+        "Formulas and constants: B. Mayaux, Improved Ambient Occlusion, 2018."}});
   return models;
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/constants.h"
+#include "core/version.h"
 #include "model/shader_text.h"
 
 namespace hemibake {
@@ -105,7 +106,7 @@ Json json_from_model(const ReportModel& model, const Score* score) {
 
 Json json_from_report(const ReportFolder& folder, std::span<const ReportModel> models,
                       const PackedPlanes& planes, const ReportData& data) {
-  Json json = {{"version", HEMIBAKE_VERSION}, {"title", data.title}, {"albedo", data.albedo}};
+  Json json = {{"version", kVersion}, {"title", data.title}, {"albedo", data.albedo}};
   json["plot_albedos"] = kPlotAlbedos;
   json["bake"] = folder.bake ? json_from_bake(*folder.bake, models, planes, data) : Json();
   json["curves"] =

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "cli/run_hemibake.h"
+#include "core/version.h"
 
 namespace hemibake {
 namespace {
@@ -67,7 +68,7 @@ TEST(Help, ListsTheCommands) {
   for (const CommandHelp& command : kCommands) EXPECT_THAT(help.standard_output, HasSubstr(command.command));
   const CommandResult version = run_hemibake("--version");
   EXPECT_EQ(version.exit_code, 0);
-  EXPECT_EQ(version.standard_output, HEMIBAKE_VERSION "\n");
+  EXPECT_EQ(version.standard_output, kVersion + std::string("\n"));
 }
 
 class JsonOutput : public CliTest {};

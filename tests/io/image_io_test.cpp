@@ -234,21 +234,12 @@ TEST_F(ImageIo, FullDiskIsOneLineAndLeavesNothing) {
   EXPECT_EQ(disk.count(), 0u);
 }
 
-<<<<<<< HEAD
-TEST(ImageIo, CancelledWorkLeavesNothing) {
-  const TemporaryFolder folder;
-  write_height_map(folder / "a.exr", Grid<float>(64, 64), Provenance::object());
-  const std::atomic<bool> cancelled{true};
-  Context context;
-  context.cancel = &cancelled;
-=======
 TEST(ImageIoCancel, LeavesNothing) {
   const TemporaryFolder folder;
   write_height_map(folder / "a.exr", Grid<float>(64, 64), Provenance::object());
   const std::atomic<bool> cancel = true;
   Context context;
   context.cancel = &cancel;
->>>>>>> trade
   const ContextScope scope(context);
   EXPECT_THROW(read_height_map(folder / "a.exr"), Cancelled);
   for (const char* name : {"b.exr", "b.png"})

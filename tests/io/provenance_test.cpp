@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "core/version.h"
 #include "io/io_testing.h"
 
 namespace hemibake {
@@ -32,7 +33,7 @@ TEST(Provenance, NamesTheInputWithoutItsFolder) {
   const TemporaryFolder folder;
   write_bytes(folder / "map \xff.png", "abc");
   const Provenance provenance = make_provenance("hemibake bake", folder / "map \xff.png");
-  EXPECT_EQ(provenance["version"], HEMIBAKE_VERSION);
+  EXPECT_EQ(provenance["version"], kVersion);
   EXPECT_EQ(provenance["command"], "hemibake bake");
   EXPECT_EQ(provenance["input"], "map \xEF\xBF\xBD.png");
   EXPECT_EQ(provenance["input_sha256"].get<std::string>().size(), 64u);

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/error.h"
+#include "core/version.h"
 
 namespace hemibake {
 namespace {
@@ -94,10 +95,10 @@ std::string describe(const CLI::ParseError& error, const CLI::App& app, int argc
 }  // namespace
 
 std::optional<ParsedCommand> parse_command_line(int argc, char** argv, std::span<const Command> commands) {
-  const auto app = std::make_shared<CLI::App>("hemibake " HEMIBAKE_VERSION
+  const auto app = std::make_shared<CLI::App>(std::string("hemibake ") + kVersion +
                                               ": bakes the light on a height map and fits models of it for "
                                               "shaders.");
-  app->set_version_flag("--version", HEMIBAKE_VERSION);
+  app->set_version_flag("--version", kVersion);
   app->require_subcommand(1);
   CommonOptions common;
   std::vector<CommandSetup> setups;
