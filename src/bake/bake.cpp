@@ -64,9 +64,41 @@ void choose_rays_and_bounces(PreparedBake& prepared) {
   if (prepared.choice->bounces > 0) prepared.settings.bounces = prepared.choice->bounces;
 }
 
-Bounces bounce(const LightTransport& transport, const BakeSettings& settings) {
+LightTransport trace(const PreparedBake& prepared, BakeResult& result) {
+  const double cpu_start = process_cpu_seconds();
+  LightTransport transport = trace_surface(
+      *prepared.tracer, prepared.settings.needs_form_factors(),
+      prepared.plan.spills ? std::make_shared<SpillFile>(prepared.settings.spill_folder) : nullptr);
+  result.counts = transport.counts;
+  result.links = transport.final_gather.count() + transport.patch_form_factors.count();
+  result.trace_cpu_seconds = process_cpu_seconds() - cpu_start;
+  return transport;
+}
+
+std::optional<LinkEnergy> energy_of(const PreparedBake& prepared, const LightTransport& transport) {
+  if (transport.final_gather.empty()) return std::nullopt;
+  return measure_link_energy(prepared.map->surface, prepared.tracer->patch_set(), transport);
+}
+
+std::optional<Bounces> bounces_of(const BakeSettings& settings, const LightTransport& transport) {
+  if (!settings.wants(BakeOutput::kIrradiance)) return std::nullopt;
   if (!settings.needs_form_factors()) return direct_light(transport);
   return bounce_light(transport, {settings.bounces, settings.converge, settings.max_bounces});
+}
+
+std::optional<ErrorEstimate> errors_of(const PreparedBake& prepared, const LightTransport& transport,
+                                       const std::optional<Bounces>& bounces) {
+  const bool has_a_bounce = bounces && bounces->irradiance.size() > 1;
+  if (!prepared.settings.estimate_errors || transport.final_gather.empty() || !has_a_bounce)
+    return std::nullopt;
+  const auto again = prepared.tracer->reseeded(prepared.settings.seed + kErrorSeed);
+  return estimate_errors(*again, transport, *bounces);
+}
+
+std::optional<TargetErrors> reached_errors(const PreparedBake& prepared, const LightTransport& transport) {
+  if (!prepared.settings.target_error) return std::nullopt;
+  return measure_reached(prepared.map->surface, transport, prepared.settings.bounces,
+                         target_options(*prepared.map, prepared.settings));
 }
 
 void keep_planes(const Surface& surface, LightTransport& transport, BakeResult& result) {
@@ -107,35 +139,22 @@ BakeResult bake(const LoadedMap& map, const BakeSettings& settings, const Contex
 }
 
 BakeResult bake(const PreparedBake& prepared) {
-  const Surface& surface = prepared.map->surface;
-  const BakeSettings& settings = prepared.settings;
   const auto start = std::chrono::steady_clock::now();
   const double cpu_start = process_cpu_seconds();
   BakeResult result;
-  result.settings = settings;
-  result.texel_size_m = surface.texel_size_m;
+  result.settings = prepared.settings;
   result.choice = prepared.choice;
+  result.texel_size_m = prepared.map->surface.texel_size_m;
   result.planned_bytes = prepared.plan.memory_bytes();
 
-  LightTransport transport =
-      trace_surface(*prepared.tracer, settings.needs_form_factors(),
-                    prepared.plan.spills ? std::make_shared<SpillFile>(settings.spill_folder) : nullptr);
-  result.counts = transport.counts;
-  result.links = transport.final_gather.count() + transport.patch_form_factors.count();
-  result.trace_cpu_seconds = process_cpu_seconds() - cpu_start;
+  LightTransport transport = trace(prepared, result);
+  result.energy = energy_of(prepared, transport);
+  result.bounces = bounces_of(prepared.settings, transport);
+  result.errors = errors_of(prepared, transport, result.bounces);
+  result.reached = reached_errors(prepared, transport);
+  keep_planes(prepared.map->surface, transport, result);
+  if (prepared.settings.keep_transport) result.transport = std::move(transport);
 
-  const bool has_form_factors = !transport.final_gather.empty();
-  if (has_form_factors) result.energy = measure_link_energy(surface, prepared.tracer->patch_set(), transport);
-
-  if (settings.wants(BakeOutput::kIrradiance)) result.bounces = bounce(transport, settings);
-  if (settings.estimate_errors && has_form_factors && result.bounces && result.bounces->irradiance.size() > 1)
-    result.errors =
-        estimate_errors(*prepared.tracer->reseeded(settings.seed + kErrorSeed), transport, *result.bounces);
-  if (settings.target_error)
-    result.reached =
-        measure_reached(surface, transport, settings.bounces, target_options(*prepared.map, settings));
-  keep_planes(surface, transport, result);
-  if (settings.keep_transport) result.transport = std::move(transport);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.cpu_seconds = process_cpu_seconds() - cpu_start;
   return result;
