@@ -1,4 +1,4 @@
-// What must hold of a bake whatever the map: light is neither made nor lost.
+// Checks that hold of a bake whatever the map: light is neither made nor lost.
 #pragma once
 
 #include <optional>

@@ -144,7 +144,7 @@ MeanLight mean_light(const Bounces& bounces) {
   return result;
 }
 
-// The same `bounces` times with light told by every other node.
+// Bounces `bounces` times with light interpolated between every other node.
 MeanLight mean_coarse_light(const PatchSet& patches, const LightTransport& seen, size_t bounces) {
   std::vector<double> light(seen.patch_direct().begin(), seen.patch_direct().end()), next(light.size()),
       sum(light.size()), texels(seen.direct_over_pi.size());

@@ -30,10 +30,10 @@ struct ErrorEstimate {
   // Largest likely errors of the mean E₁ and of the mean total at albedo ½; 0 where patches are texels, whose
   // error only the referee knows.
   double first_patches = 0, half_patches = 0;
-  // Of the mean total, at albedo 1 and ½.
+  // Light of the mean total still under way, at albedo 1 and ½.
   double total_bounces = 0, half_bounces = 0;
   double far_horizon = 0;
-  // Of the curves of E₀ and E₁ over α: root mean square over the texels' bins.
+  // Errors of the curves of E₀ and E₁ over α: root mean square over the texels' bins.
   double curve_direct = 0, curve_first = 0;
 };
 

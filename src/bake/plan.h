@@ -1,4 +1,4 @@
-// What a bake will take, before it starts.
+// Plans the memory and the work of a bake before it starts.
 #pragma once
 
 #include <cstdint>

@@ -42,7 +42,7 @@ Field when(std::function<bool()> has_meaning, Field field) {
   return field;
 }
 
-// What the preset stands for, where the user did not set it.
+// Applies what the preset stands for, where the user did not set it.
 void apply_mayaux2018(MapSettings& map, BakeSettings& settings, const IsGiven& given) {
   const auto set = [&given](const char* name, auto& setting, const auto& value) {
     if (!given(name)) setting = value;

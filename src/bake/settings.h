@@ -1,4 +1,4 @@
-// What can be asked of a bake: the map it is made of, and how its light is traced and bounced.
+// Settings of a bake: the map it is made of, and how its light is traced and bounced.
 //
 // Every setting is described once, by a field of map_fields or bake_fields. From these come the options of
 // the command line with their help, what a bake records of how it was made, and what is read back of it.
@@ -21,7 +21,7 @@
 
 namespace hemibake {
 
-// Where the texels' normals come from: central differences of the heights, angle-weighted faces, or a file.
+// Source of the texels' normals: central differences of the heights, angle-weighted faces, or a file.
 enum class NormalSource { kHeights, kFaces, kMap };
 
 // Rays of a march follow unit normals, or the normal map's as long as they are stored.
@@ -53,7 +53,7 @@ struct BakeSettings {
   std::optional<double> target_error;      // chooses rays and bounces
   bool explain = false;
   uint64_t seed = 0;
-  // Of the march.
+  // For the march only.
   int max_steps = 200;
   double lift_percent = 1;
   MarchRays ray_set = MarchRays::kRotated;

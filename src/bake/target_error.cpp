@@ -46,7 +46,7 @@ std::vector<Block> sample_blocks(const Surface& surface, size_t wanted, uint64_t
 // E/π of the patches at each albedo; empty without light.
 using PatchLight = std::array<std::vector<double>, kJudgedAlbedos.size()>;
 
-// What the sampled texels see, block after block.
+// Values of the sampled texels, block after block.
 struct SampleValues {
   std::vector<double> ao, direct;
   std::array<std::vector<double>, kJudgedAlbedos.size()> light;

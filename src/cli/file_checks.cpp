@@ -51,7 +51,7 @@ void check_numbers(const NamedFit& named, Checks& checks) {
       {named.name + ": rms of the fit", named.fit.rms, 0, std::numeric_limits<double>::infinity(), ""});
 }
 
-// Of the fits called `direct` and `bounces`, all parameters by name; empty unless both are there.
+// Returns all parameters of the fits called `direct` and `bounces` by name; none unless both are there.
 std::map<std::string, double> parameters_of(const FitFile& file, const char* direct, const char* bounces) {
   std::map<std::string, double> parameters;
   int found = 0;

@@ -36,7 +36,7 @@ struct RenderOptions {
 // They refer to `options`, which must outlive them.
 std::vector<Field> render_fields(RenderOptions& options);
 
-// What no option can know by itself. Throws InputError.
+// Resolves what no option can know by itself. Throws InputError.
 void resolve(RenderOptions& options);
 
 // "R,G,B" or one number for all three, 0..1; nullopt where the text is no list of numbers, which is then a

@@ -1,4 +1,4 @@
-// Where a command puts several results.
+// Makes the folder that a command puts several results in.
 #pragma once
 
 #include <fmt/format.h>

@@ -59,7 +59,7 @@ Value texts(std::vector<std::string>& variable);  // one or more
 Value numbers(std::vector<double>& variable, int count, double low, double high);
 Value whole_numbers(std::vector<int>& variable, int count, int low, int high);
 
-// One of `names`, by its index.
+// Takes one of `names`, by its index.
 Value choice_of(std::vector<std::string> names, std::function<std::optional<size_t>()> get,
                 std::function<void(size_t)> set);
 // Several of `names`, which commas may separate, in the order given.

@@ -32,7 +32,7 @@ struct LargePageAllocator {
   }
   void deallocate(T* memory, size_t) { std::free(memory); }
 
-  // What is resized is not set to zero first.
+  // Leaves new elements unset: they are written before they are read.
   template <class U>
   void construct(U* place) {
     ::new (static_cast<void*>(place)) U;

@@ -199,7 +199,7 @@ std::array<uint64_t, 2> read_shape(hid_t group, const std::string& name) {
   return shape;
 }
 
-// Where a block of rows lies in the matrix that is read.
+// Place of a block of rows in the matrix that is read.
 struct BlockPlace {
   const std::string& name;  // of the matrix
   uint64_t columns, links;  // of the matrix

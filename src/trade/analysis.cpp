@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::string_view kFrontModel = "bounded";
 
-// Whether a run is to be judged by this plane. A run with bounces pays for them; its α and E₀/π are those of
-// the run without, which is in the study too.
+// Returns whether a run is judged by this plane. A run with bounces pays for them; its α and E₀/π are those
+// of the run without, which is in the study too.
 bool is_judged_by(const ScoredRun& run, size_t plane) {
   return run.error[plane] && !(plane < kFirstPlane && run.has_bounces());
 }

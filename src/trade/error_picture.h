@@ -1,4 +1,4 @@
-// Where a run is wrong: its signed error as a picture.
+// Draws the signed error of a run, texel by texel.
 #pragma once
 
 #include <filesystem>

@@ -6,7 +6,7 @@
 
 namespace hemibake {
 
-// Of estimate − truth over texels.
+// Measures estimate − truth over texels.
 struct ErrorStatistics {
   double rmse = 0;
   double bias = 0;     // mean

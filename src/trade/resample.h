@@ -1,4 +1,4 @@
-// The same map with other texels: what a bake at half or double resolution answers for the texels of this
+// Resamples a map to other texels: what a bake at half or double resolution answers for the texels of this
 // one.
 #pragma once
 

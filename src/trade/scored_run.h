@@ -48,7 +48,7 @@ struct ScoredRun : RunDescription {
   std::optional<CurveErrors> curve;
   std::vector<LightModelErrors> models;
 
-  // Whether it traced bounces itself.
+  // Returns whether it traced bounces itself.
   bool has_bounces() const { return error[kFirstPlane].has_value(); }
 };
 

@@ -1,4 +1,4 @@
-// What a person should know although the work went well.
+// Prints what a person should know although the work went well.
 #pragma once
 
 #include <filesystem>
