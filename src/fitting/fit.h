@@ -24,10 +24,11 @@ enum class Weights {
 };
 
 struct CurvePoint {
-  double ao = 0;      // abscissa α
-  double value = 0;   // E_b/π at albedo 1
-  double weight = 1;  // relative, above 0; the weights of a fit have mean 1
-  double albedo = 1;  // ρ, where the value depends on it
+  double ao = 0;          // abscissa α
+  double value = 0;       // E_b/π at albedo 1
+  double weight = 1;      // relative, above 0; the weights of a fit have mean 1
+  double albedo = 1;      // ρ, where the value depends on it
+  double visibility = 0;  // V = E₀/π of the bin, where the value depends on it
 };
 
 // Returns the points of one bounce in bin order, without empty bins.
@@ -49,9 +50,14 @@ std::vector<CurvePoint> visibility_points(const Curves& curves, std::span<const 
 struct FitParameter {
   std::string name;
   double value = 0;
-  // Square root of the covariance's diagonal; none for a parameter on its bound.
+  // Square root of the covariance's diagonal; none for a parameter on its bound. Where others are on theirs,
+  // it holds for them staying there.
   std::optional<double> standard_error;
+  bool on_bound = false;  // the residuals fall only beyond the end of its range
 };
+
+// Sets of parameters that a fit begins from.
+using Starts = std::vector<std::vector<double>>;
 
 struct Fit {
   std::string model;
