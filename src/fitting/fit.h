@@ -14,6 +14,7 @@ namespace hemibake {
 enum class Abscissa {
   kCenter,      // middle of the bin
   kMayaux2018,  // (j + 1)/(bins − 1) for bin j from 0: that of the constants of 2018, one bin too far
+  kVisibility,  // V, the mean E₀/π of its texels, whatever the curves are over
 };
 
 // Selects the weight of a bin.
@@ -42,10 +43,6 @@ std::vector<CurvePoint> curve_points(const Curves& curves, int bounce, Abscissa 
 // weights: with kStandardError, the spread of a total is its upper bound, the sum of its bounces' spreads.
 std::vector<CurvePoint> total_points(const Curves& curves, std::span<const double> albedos, Abscissa abscissa,
                                      Weights weights);
-
-// Returns the points (E₀/π, ρ, total_over_pi): total_points over the cosine-weighted visible fraction.
-std::vector<CurvePoint> visibility_points(const Curves& curves, std::span<const double> albedos,
-                                          Weights weights);
 
 struct FitParameter {
   std::string name;
@@ -83,7 +80,7 @@ struct NamedFit {
 // Returns the value of the parameter called `name`. Throws std::logic_error where there is none.
 double parameter_value(const Fit& fit, const std::string& name);
 
-std::string to_string(Abscissa abscissa);  // center, published
+std::string to_string(Abscissa abscissa);  // center, published, visibility
 std::string to_string(Weights weights);    // none, count, stderr
 
 // Parse the texts above. Throw InputError for any other.

@@ -5,10 +5,14 @@
 // Source: B. Mayaux, "Study Notes: Improved Ambient Occlusion", 2018 (the notes).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace hemibake {
+
+// Smallest share of light that is divided by: keeps 0/0 out of floats, 1e-12 away from the formulas.
+inline constexpr double kSmallestShare = 1e-12;
 
 // Returns max(1 − α, 0): the abscissa of 2018 runs to 100/99.
 template <class X>
@@ -72,6 +76,31 @@ template <class T, class X>
 T total_factor(X direct, X blocked, const T& escape, X albedo) {
   const T out = albedo * escape;
   return direct + blocked * (out / (X(1) - albedo + out));
+}
+
+// Returns E/π over all bounces, 1 − (1−V)(1−ρ)/(1 − ρ + ρg): total_factor from V and the escape share g, with
+// one reciprocal. V at ρ = 0, 1 at ρ = 1, in [V, 1], rises with V, g and ρ.
+// visibility: V = E₀/π, 0..1. escape: g = 1 − τ, the share of the light under way that each bounce sends out
+// to the sky, 0..1. albedo: ρ, 0..1. Source: eq. 10 of the notes; with g = V, Stewart and Langer 1997,
+// "Towards Accurate Recovery of Shape from Shading under Diffuse Lighting".
+template <class T, class X>
+T escape_irradiance(X visibility, const T& escape, X albedo) {
+  const X absorbed = X(1) - albedo;
+  const T leaves = absorbed + albedo * escape;
+  return T(1) - (X(1) - visibility) * absorbed / (leaves + X(kSmallestShare));
+}
+
+// Returns E/π over all bounces from the light at two albedos: the curve through (0, V), (r, E_r) and (1, 1)
+// that escape_irradiance draws with the g of the texel. In [V, 1], rises with ρ and E_r. An E_r below V
+// counts as V. visibility: V, 0..1. bounce: E_r, E/π of all bounces at albedo r, 0..1. albedo: ρ, 0..1.
+// bounce_albedo: r, inside 0..1.
+template <class X>
+X bounce_map_irradiance(X visibility, X bounce, X albedo, X bounce_albedo) {
+  const X blocked = X(1) - visibility;
+  const X left = std::min(std::max(X(1) - bounce, X(kSmallestShare)), blocked);
+  const X absorbed = (X(1) - albedo) * left;
+  const X gained = albedo * ((X(1) - bounce_albedo) / bounce_albedo) * (blocked - left);
+  return X(1) - absorbed * blocked / (absorbed + gained + X(kSmallestShare) * X(kSmallestShare));
 }
 
 // Smallest 1 − τ of the guarded model: the formulas give 0 at α = 0, where the total at ρ = 1 would be 0/0.

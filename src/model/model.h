@@ -105,6 +105,47 @@ struct GuardedModel {
   }
 };
 
+// Gives all bounces from V alone, with g = dark + (open − dark)V. Rises with V and ρ for all constants.
+struct VisibilityModel {
+  double dark = 0;  // 0..1: share of the light under way that a bounce sends out to the sky, where V = 0…
+  double open = 1;  // 0..1: …and where V = 1
+
+  template <class T>
+  T escape(T visibility) const {
+    return static_cast<T>(dark) + static_cast<T>(open - dark) * visibility;
+  }
+  template <class T>
+  T total(T visibility, T albedo) const {
+    return escape_irradiance(visibility, escape(visibility), albedo);
+  }
+};
+
+// Gives all bounces from V and α, with g = dark + (open − dark)α; by default g = α, without any constant.
+struct VisibilityAoModel {
+  double dark = 0;  // 0..1: g where α = 0…
+  double open = 1;  // 0..1: …and where α = 1
+
+  template <class T>
+  T escape(T ao) const {
+    return static_cast<T>(dark) + static_cast<T>(open - dark) * ao;
+  }
+  template <class T>
+  T total(T visibility, T ao, T albedo) const {
+    return escape_irradiance(visibility, escape(ao), albedo);
+  }
+};
+
+// Gives all bounces from two textures, V and E/π at one albedo: the planes `visibility` and `bounce` of a
+// bake.
+struct BounceMapModel {
+  double bounce_albedo = 0.9;  // r, inside 0..1: albedo of the second texture
+
+  template <class T>
+  T total(T visibility, T bounce, T albedo) const {
+    return bounce_map_irradiance(visibility, bounce, albedo, static_cast<T>(bounce_albedo));
+  }
+};
+
 // Holds a model that textures, pictures and shader texts can be made with.
 using ShaderModel = std::variant<BoundedModel, GuardedModel>;
 

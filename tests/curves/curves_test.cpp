@@ -32,7 +32,7 @@ TEST(Curves, BinEdgesBelongToTheBinAboveAndOneToTheLast) {
   const std::vector<double> counts{2, 1, 0, 3};
   for (size_t j = 0; j < 4; ++j) {
     EXPECT_EQ(curves.bins[j].count, counts[j]) << "bin " << j;
-    EXPECT_DOUBLE_EQ(curves.bins[j].ao_low, 0.25 * static_cast<double>(j));
+    EXPECT_DOUBLE_EQ(curves.bins[j].low, 0.25 * static_cast<double>(j));
     EXPECT_DOUBLE_EQ(bin_center(curves.bins[j]), 0.25 * static_cast<double>(j) + 0.125);
   }
 }
@@ -41,7 +41,7 @@ TEST(Curves, MeanAndSpreadOfEveryBounce) {
   const Bake bake = make_bake({0.1F, 0.2F, 0.9F}, {{1, 2, 3}, {0.5F, 0.5F, 0.25F}});
   const Curves curves = make_curves(bake, 2);
   EXPECT_EQ(curves.bounce_count, 2);
-  EXPECT_NEAR(curves.bins[0].ao_mean, 0.15, 1e-8);
+  EXPECT_NEAR(curves.bins[0].mean, 0.15, 1e-8);
   EXPECT_DOUBLE_EQ(curves.bins[0].bounces[0].mean, 1.5);
   EXPECT_DOUBLE_EQ(curves.bins[0].bounces[0].stddev, 0.5);
   EXPECT_DOUBLE_EQ(curves.bins[0].bounces[1].mean, 0.5);

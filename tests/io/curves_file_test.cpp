@@ -47,7 +47,7 @@ TEST(CurvesFile, ReadsThePublishedFormat) {
   const Curves curves = curves_from_table(table, "c.csv");
   EXPECT_FALSE(curves.has_counts);
   EXPECT_EQ(curves.bounce_count, 2);
-  EXPECT_EQ(curves.bins[1].ao_low, 0.5);
+  EXPECT_EQ(curves.bins[1].low, 0.5);
   EXPECT_EQ(curves.bins[1].bounces[0].mean, 2);
 }
 

@@ -14,13 +14,14 @@ struct ComparedCandidate {
   Comparison comparison;
 };
 
-// Returns {"models": [{"model", "formula", "parameters", "aicc", "errors": [{"curves", "own", "others"}]}]}.
-// paths: of the curves, in the order of the comparisons.
+// Returns {"models": [{"model", "formula", "parameters", "aicc", "errors": [{"map", "own", "others"}]}]}.
+// names: of the maps, in the order of the comparisons.
 nlohmann::json json_from_comparisons(std::span<const ComparedCandidate> candidates,
-                                     std::span<const std::string> paths);
+                                     std::span<const std::string> names);
 
-// Returns a table, a line for each candidate. paths: as above.
+// Returns a table of means, a line for each candidate, and tables of four maps each; at most 100 columns.
+// names: as above.
 std::string text_from_comparisons(std::span<const ComparedCandidate> candidates,
-                                  std::span<const std::string> paths);
+                                  std::span<const std::string> names);
 
 }  // namespace hemibake
