@@ -8,7 +8,7 @@ namespace hemibake {
 namespace {
 
 constexpr size_t kWidth = 80;
-constexpr size_t kIndent = 13;
+constexpr size_t kIndent = 14;
 constexpr size_t kNameWidth = 15;
 constexpr size_t kConstantWidth = 9;
 constexpr size_t kFitsInRow = 3;
