@@ -20,10 +20,11 @@ struct CompareOptions {
 };
 
 int run_compare(const CompareOptions& options, const Invocation& invocation) {
-  std::vector<std::string> skipped, names;
+  std::vector<std::string> skipped;
+  std::vector<ComparedMap> maps;
   std::vector<Curves> sets;
   for (CurveInput& input : read_curve_inputs(options.curves, skipped)) {
-    names.push_back(input.map.name);
+    maps.push_back({input.map.name, input.path});
     sets.push_back(std::move(input.map.curves));
   }
   std::vector<ComparedCandidate> compared;
@@ -31,7 +32,7 @@ int run_compare(const CompareOptions& options, const Invocation& invocation) {
     if (!candidate.needs_ao || sets[0].index == CurveIndex::kAo)
       compared.push_back({&candidate, compare_candidate(candidate, sets)});
   for (const std::string& line : skipped) fmt::print(stderr, "hemibake: {}\n", line);
-  invocation.print(json_from_comparisons(compared, names), text_from_comparisons(compared, names));
+  invocation.print(json_from_comparisons(compared, maps), text_from_comparisons(compared, maps));
   return 0;
 }
 

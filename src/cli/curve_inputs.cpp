@@ -97,7 +97,7 @@ void expect_different_names(const std::vector<CurveInput>& inputs) {
   std::map<std::string, std::string> path_of;
   for (const CurveInput& input : inputs) {
     const auto [known, is_new] = path_of.emplace(input.map.name, input.path);
-    if (!is_new)
+    if (!is_new && known->second != input.path)
       throw InputError(fmt::format("{}, {}: two maps of the name '{}', expected a name each; rename one",
                                    known->second, input.path, input.map.name));
   }

@@ -20,10 +20,10 @@ std::string cell(const Score& score) { return fmt::format("{:.4f} ({:.3f})", sco
 
 // Returns a row of names, and one of errors for each candidate. errors: Comparison::own or ::others.
 // begin, end: of the maps in this block.
-std::string block(std::span<const ComparedCandidate> candidates, std::span<const std::string> names,
+std::string block(std::span<const ComparedCandidate> candidates, std::span<const ComparedMap> maps,
                   std::vector<Score> Comparison::*errors, size_t begin, size_t end) {
   std::string text(kNameWidth, ' ');
-  for (size_t i = begin; i < end; ++i) text += fmt::format(" {:>15}", fit_name(names[i], 15));
+  for (size_t i = begin; i < end; ++i) text += fmt::format(" {:>15}", fit_name(maps[i].name, 15));
   for (const auto& [candidate, comparison] : candidates) {
     text += fmt::format("\n{:{}}", candidate->name, kNameWidth);
     for (size_t i = begin; i < end; ++i) text += fmt::format(" {:>15}", cell((comparison.*errors)[i]));
@@ -53,12 +53,13 @@ std::string overview(std::span<const ComparedCandidate> candidates) {
 }  // namespace
 
 nlohmann::json json_from_comparisons(std::span<const ComparedCandidate> candidates,
-                                     std::span<const std::string> names) {
+                                     std::span<const ComparedMap> maps) {
   nlohmann::json models = nlohmann::json::array();
   for (const auto& [candidate, comparison] : candidates) {
     nlohmann::json errors = nlohmann::json::array();
-    for (size_t i = 0; i < names.size(); ++i) {
-      errors.push_back({{"map", names[i]}, {"own", json_from_score(comparison.own[i])}});
+    for (size_t i = 0; i < maps.size(); ++i) {
+      errors.push_back(
+          {{"map", maps[i].name}, {"curves", maps[i].path}, {"own", json_from_score(comparison.own[i])}});
       if (!comparison.others.empty()) errors.back()["others"] = json_from_score(comparison.others[i]);
     }
     models.push_back({{"model", candidate->name},
@@ -71,16 +72,16 @@ nlohmann::json json_from_comparisons(std::span<const ComparedCandidate> candidat
 }
 
 std::string text_from_comparisons(std::span<const ComparedCandidate> candidates,
-                                  std::span<const std::string> names) {
+                                  std::span<const ComparedMap> maps) {
   std::string text =
       "rms (largest) error of E/pi over the bins x albedo 0..1, means over the maps; p: fitted constants\n" +
       overview(candidates);
-  const bool several = names.size() > 1;
-  for (size_t begin = 0; begin < names.size(); begin += kMapsInRow) {
-    const size_t end = std::min(names.size(), begin + kMapsInRow);
-    text += "\nfitted to the map itself\n" + block(candidates, names, &Comparison::own, begin, end);
+  const bool several = maps.size() > 1;
+  for (size_t begin = 0; begin < maps.size(); begin += kMapsInRow) {
+    const size_t end = std::min(maps.size(), begin + kMapsInRow);
+    text += "\nfitted to the map itself\n" + block(candidates, maps, &Comparison::own, begin, end);
     if (several)
-      text += "\nfitted to all the others\n" + block(candidates, names, &Comparison::others, begin, end);
+      text += "\nfitted to all the others\n" + block(candidates, maps, &Comparison::others, begin, end);
   }
   return text;
 }
