@@ -15,6 +15,8 @@ constexpr int kMaxSteps = 1000;
 constexpr int kMaxRounds = 100;
 // Cosine below which a gradient has no sign but rounding's.
 constexpr double kZeroGradient = 1e-12;
+// Root mean square of residuals that are all rounding: their gradient means nothing.
+constexpr double kRounding = 1e-9;
 
 // Minimises over the parameters that are not held. Returns why it failed; empty: converged.
 std::string solve_free(std::span<const ParameterRange> ranges, ceres::CostFunction& cost, Minimum& at) {
@@ -60,6 +62,14 @@ Eigen::VectorXd gradient_cosines(const Evaluation& at) {
   return cosines;
 }
 
+// Returns whether the gradient of what is free is 0: Ceres also stops where a valley is too flat to follow.
+bool is_stationary(const Evaluation& at, const Eigen::VectorXd& gradient, const std::vector<bool>& held) {
+  if (at.residuals.norm() <= kRounding * std::sqrt(static_cast<double>(at.residuals.size()))) return true;
+  for (size_t p = 0; p < held.size(); ++p)
+    if (!held[p] && !(std::abs(gradient[static_cast<Eigen::Index>(p)]) <= kGradientTolerance)) return false;
+  return true;
+}
+
 // Returns what to hold: the parameters on a bound whose cost does not fall inward.
 std::vector<bool> outward(std::span<const ParameterRange> ranges, const std::vector<double>& parameters,
                           const Eigen::VectorXd& gradient) {
@@ -82,8 +92,12 @@ Minimum minimize_within(std::span<const ParameterRange> ranges, ceres::CostFunct
     const Evaluation values = evaluate(cost, at.parameters);
     at.cost = 0.5 * values.residuals.squaredNorm();
     if (!at.failure.empty()) return at;
-    const std::vector<bool> held = outward(ranges, at.parameters, gradient_cosines(values));
-    if (held == at.held) return at;
+    const Eigen::VectorXd gradient = gradient_cosines(values);
+    const std::vector<bool> held = outward(ranges, at.parameters, gradient);
+    if (held == at.held) {
+      if (!is_stationary(values, gradient, held)) at.failure = "the gradient is not 0 where it stops";
+      return at;
+    }
     at.held = held;
   }
   at.failure = fmt::format("no set of bounds to hold after {} rounds", kMaxRounds);

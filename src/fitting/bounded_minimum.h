@@ -32,8 +32,8 @@ struct Minimum {
 Minimum minimize_within(std::span<const ParameterRange> ranges, ceres::CostFunction& cost,
                         std::vector<double> start);
 
-// Largest cosine between the residuals and a free column of the Jacobian at a minimum: a parameter is then
-// within 10⁻⁶ of its standard error for any fit of fewer than 10⁶ points.
-inline constexpr double kGradientTolerance = 1e-8;
+// Largest cosine between the residuals and a free column of the Jacobian at a minimum. Fits of curves reach
+// 10⁻⁷; one that creeps along an endless valley stays above 10⁻³.
+inline constexpr double kGradientTolerance = 1e-5;
 
 }  // namespace hemibake
