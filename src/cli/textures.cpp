@@ -63,8 +63,9 @@ std::vector<WrittenTexture> textures_of_bake(const TexturesOptions& options, con
       throw InputError(fmt::format("--{}: is of a bake to be made, but {} is made, expected a height map with it",
                                    option, options.map.map.string()));
   const BakeFile file = read_bake(options.map.map);
-  Provenance provenance = file.provenance;
-  provenance.update(make_provenance(invocation.context.command, options.map.map));
+  Provenance provenance = make_provenance(invocation.context.command, options.map.map);
+  for (const auto& [key, value] : file.provenance.items())
+    provenance[provenance.contains(key) || key == "input_path" ? "bake_" + key : key] = value;
   return with_file_context(options.map.map, [&] {
     return make_textures(file.bake, provenance, options.textures, options.folder, name);
   });
