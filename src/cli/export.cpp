@@ -75,20 +75,21 @@ const Target& target_of(const ExportOptions& options) {
   const std::string expected = fmt::format("{}", fmt::join(target_names(), ", "));
   if (options.target.empty()) {
     if (by_name != targets().end()) return *by_name;
-    throw InputError(
-        fmt::format("{}: its name says no language, expected a name such as model.glsl, or --to with one of {}",
-                    options.output.string(), expected));
+    throw InputError(fmt::format(
+        "{}: its name says no language, expected a name such as model.glsl, or --to with one of {}",
+        options.output.string(), expected));
   }
   const Target& wanted = named_target(options.target);
   const bool header = ending == kHeaderEnding && wanted.language;
   if (by_name == targets().end() || by_name->name == wanted.name || header) return wanted;
-  throw InputError(fmt::format("{}: its name says {}, but --to says {}; expected one of them, or both the same",
-                               options.output.string(), by_name->name, wanted.name));
+  throw InputError(
+      fmt::format("{}: its name says {}, but --to says {}; expected one of them, or both the same",
+                  options.output.string(), by_name->name, wanted.name));
 }
 
 void check_prefix(const std::string& prefix) {
-  const bool letters = std::ranges::all_of(
-      prefix, [](unsigned char c) { return c < 128 && (std::isalnum(c) || c == '_'); });
+  const bool letters =
+      std::ranges::all_of(prefix, [](unsigned char c) { return c < 128 && (std::isalnum(c) || c == '_'); });
   if (!letters || (!prefix.empty() && std::isdigit(static_cast<unsigned char>(prefix[0]))))
     throw InputError(fmt::format(
         "--prefix: '{}', expected letters, digits and underscores, and no digit at first", prefix));
@@ -99,8 +100,8 @@ void set_bounce_albedo(AnyModel& model, const ExportOptions& options, const Prov
   auto* map = std::get_if<BounceMapModel>(&model);
   if (!map) {
     if (!options.bounce_albedo) return;
-    throw InputError(fmt::format("--bounce-albedo: the model {} has none, expected --model bounce-map",
-                                 options.model));
+    throw InputError(
+        fmt::format("--bounce-albedo: the model {} has none, expected --model bounce-map", options.model));
   }
   constexpr const char* kKey = "bounce_albedo";
   if (options.bounce_albedo) {
@@ -108,8 +109,8 @@ void set_bounce_albedo(AnyModel& model, const ExportOptions& options, const Prov
   } else if (provenance.contains(kKey) && provenance[kKey].is_number()) {
     map->bounce_albedo = provenance[kKey].get<double>();
     if (!(map->bounce_albedo >= 0.01 && map->bounce_albedo <= 0.999))
-      throw InputError(fmt::format("{}: bounce_albedo is {}, expected 0.01 to 0.999", options.fits,
-                                   map->bounce_albedo));
+      throw InputError(
+          fmt::format("{}: bounce_albedo is {}, expected 0.01 to 0.999", options.fits, map->bounce_albedo));
   }
 }
 
@@ -167,23 +168,28 @@ CommandSetup setup_export() {
   setup.fields = {
       required(option("FIT", text(options->fits),
                       "the fits, JSON as 'hemibake fit' writes it; none: a model that needs no fits")),
-      required(output_option(options->output,
-                             "the file to write; its name says the language: .glsl .frag .gdshaderinc, .hlsl .usf "
-                             ".cginc, .wgsl, .metal, .osl, .h .hpp .cpp, .csv")),
+      required(
+          output_option(options->output,
+                        "the file to write; its name says the language: .glsl .frag .gdshaderinc, .hlsl .usf "
+                        ".cginc, .wgsl, .metal, .osl, .h .hpp .cpp, .csv")),
       option("to", choice(options->target, target_names()),
              "source text in a language, or csv: a table over AO and albedo (default: by the file's name)"),
-      option("model", choice(options->model, model_kind_names()),
-             "visibility: all light from V, the cosine-weighted AO; visibility-ao: from V and the uniform AO; "
-             "bounce-map: from two textures; of the uniform AO: bounded, or published (the formulas of 2018 with "
-             "F0 and tau cut to 0..1); jimenez: their cubic of V"),
+      option(
+          "model", choice(options->model, model_kind_names()),
+          "visibility: all light from V, the cosine-weighted AO; visibility-ao: from V and the uniform AO; "
+          "bounce-map: from two textures; of the uniform AO: bounded, or published (the formulas of 2018 "
+          "with "
+          "F0 and tau cut to 0..1); jimenez: their cubic of V"),
       option("constants", choice(options->constants, {"fit", kNoFits}),
              "of FIT, or none: those that a model has without fits (visibility: escape = V; visibility-ao: "
              "escape = AO; published: of 2018; jimenez: of 2016)"),
-      option("bounce-albedo", number(options->bounce_albedo, 0.01, 0.999),
-             "the albedo that the second texture of bounce-map was baked with (default: as FIT's bake recorded "
-             "it, else 0.9)"),
-      option("prefix", text(options->prefix),
-             "begins every name (default: constants and helpers begin with hemibake_, functions with nothing)"),
+      option(
+          "bounce-albedo", number(options->bounce_albedo, 0.01, 0.999),
+          "the albedo that the second texture of bounce-map was baked with (default: as FIT's bake recorded "
+          "it, else 0.9)"),
+      option(
+          "prefix", text(options->prefix),
+          "begins every name (default: constants and helpers begin with hemibake_, functions with nothing)"),
   };
   setup.run = [options](const Invocation& invocation) { return run_export(*options, invocation); };
   return setup;

@@ -137,8 +137,8 @@ std::vector<std::string> describe_fits(std::span<const NamedFit> fits, ModelKind
       if (parameter.standard_error) line += fmt::format(" +- {:.2g}", *parameter.standard_error);
     }
     const bool of_ao = kind == ModelKind::kBounded || kind == ModelKind::kMayaux2018;
-    lines.push_back(line + fmt::format(" ({}rms {:.2g}, max {:.2g})", of_ao ? "a = ao; " : "", fit->rms,
-                                       fit->max_error));
+    lines.push_back(
+        line + fmt::format(" ({}rms {:.2g}, max {:.2g})", of_ao ? "a = ao; " : "", fit->rms, fit->max_error));
   }
   return lines;
 }

@@ -98,9 +98,9 @@ X bounce_map_irradiance(X visibility, X bounce, X albedo, X bounce_albedo) {
   const X blocked = X(1) - visibility;
   const X missing = std::clamp(X(1) - bounce, X(0), blocked);
   const X kept = (X(1) - albedo) * missing;
-  const X lit = albedo * ((X(1) - bounce_albedo) / bounce_albedo) * (blocked - missing);
-  if (kept + lit == X(0)) return visibility;  // E_r = 1 at ρ = 0, or V = 1
-  return X(1) - blocked * (kept / (kept + lit));
+  const X gained = albedo * ((X(1) - bounce_albedo) / bounce_albedo) * (blocked - missing);
+  if (kept + gained == X(0)) return visibility;  // E_r = 1 at ρ = 0, or V = 1
+  return X(1) - blocked * (kept / (kept + gained));
 }
 
 // Smallest 1 − τ of the guarded model: the formulas give 0 at α = 0, where the total at ρ = 1 would be 0/0.

@@ -12,11 +12,11 @@ namespace {
 
 // Holds what differs between the languages. In `constant`, {0} is the name and {1} the value.
 struct Spelling {
-  std::string_view name;      // in the include guard
-  std::string_view open;      // after the guard's first lines
-  std::string_view close;     // before its last
-  std::string_view constant;  // declares one
-  std::string_view function;  // before each function without templates
+  std::string_view name;                            // in the include guard
+  std::string_view open;                            // after the guard's first lines
+  std::string_view close;                           // before its last
+  std::string_view constant;                        // declares one
+  std::string_view function;                        // before each function without templates
   std::array<std::string_view, 3> types;            // of float, vec2, vec3 as results
   std::array<std::string_view, 3> parameter_types;  // and as parameters
   std::string_view rgb_open, rgb_close;             // around three numbers
@@ -34,24 +34,19 @@ constexpr std::array<std::string_view, 3> kCppTypes{"float", "Vec2", "Vec3"};
 constexpr std::array<std::string_view, 3> kCppParameterTypes{"float", "const Vec2&", "const Vec3&"};
 
 constexpr Spelling kGlsl{
-    "GLSL",  "", "", "const float {0} = {1};", "", kGlslTypes, kGlslTypes, "vec3(", ")", "", "",
+    "GLSL", "", "", "const float {0} = {1};", "", kGlslTypes, kGlslTypes, "vec3(", ")", "", "",
 };
 constexpr Spelling kHlsl{
-    "HLSL",  "", "", "static const float {0} = {1};", "", kHlslTypes, kHlslTypes, "float3(", ")", "", "",
+    "HLSL", "", "", "static const float {0} = {1};", "", kHlslTypes, kHlslTypes, "float3(", ")", "", "",
 };
 constexpr Spelling kWgsl{
     "WGSL", "", "", "const {0}: f32 = {1};", "fn ", kWgslTypes, kWgslTypes, "vec3f(", ")", "", "", false,
 };
-constexpr Spelling kMsl{"MSL",
-                        "#include <metal_stdlib>\nusing namespace metal;\n\n",
-                        "",
-                        "constant float {0} = {1};",
-                        "inline ",
-                        kHlslTypes,
-                        kHlslTypes,
-                        "float3(",
-                        ")",
-                        "f",
+constexpr Spelling kMsl{"MSL",      "#include <metal_stdlib>\nusing namespace metal;\n\n",
+                        "",         "constant float {0} = {1};",
+                        "inline ",  kHlslTypes,
+                        kHlslTypes, "float3(",
+                        ")",        "f",
                         ""};
 constexpr Spelling kOsl{
     "OSL", "", "", "#define {0} ({1})", "", kOslTypes, kOslTypes, "color(", ")", "", "",
@@ -145,7 +140,8 @@ class Translator {
 
   std::string guard(std::string_view model) const {
     std::string name = fmt::format("{}{}_{}", helper_prefix_, model, spelling_.name);
-    for (char& c : name) c = is_word(c) ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : '_';
+    for (char& c : name)
+      c = is_word(c) ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : '_';
     return name;
   }
 
@@ -181,11 +177,10 @@ class Translator {
     while (!list.empty()) {
       const size_t colon = list.find(": "), comma = std::min(list.find(", "), list.size());
       const std::string_view name = list.substr(0, colon);
-      const std::string kind =
-          type(list.substr(colon + 2, comma - colon - 2), spelling_.parameter_types);
+      const std::string kind = type(list.substr(colon + 2, comma - colon - 2), spelling_.parameter_types);
       if (!result.empty()) result += ", ";
-      result += language_ == Language::kWgsl ? fmt::format("{}: {}", name, kind)
-                                             : fmt::format("{} {}", kind, name);
+      result +=
+          language_ == Language::kWgsl ? fmt::format("{}: {}", name, kind) : fmt::format("{} {}", kind, name);
       list = list.substr(std::min(comma + 2, list.size()));
     }
     return result;

@@ -159,22 +159,22 @@ fn @multi_bounce_irradiance(visibility: float, ao_uniform: float, albedo: vec3) 
 
 constexpr std::string_view kOfBounceMap = R"(
 // The curve through visibility at albedo 0, the map's second number at its albedo, and 1 at albedo 1.
-// blocked: 1 - visibility. missing: what is missing of 1 at the map's albedo. lit: how much bounces filled in.
-fn $all_bounces(blocked: float, missing: float, lit: float, albedo: float) -> float {
+// blocked: 1 - visibility. missing: what is missing of 1 at the map's albedo. gained: how much bounces filled in.
+fn $all_bounces(blocked: float, missing: float, gained: float, albedo: float) -> float {
   let r = $unit_range(albedo);
   let kept = (1.0 - r) * missing;
-  return 1.0 - blocked * (kept / max(kept + r * lit, $tiny));
+  return 1.0 - blocked * (kept / max(kept + r * gained, $tiny));
 }
 
 // All bounces of light, for each channel of the albedo.
 fn @multi_bounce(map: vec2, albedo: vec3) -> vec3 {
   let blocked = 1.0 - $unit_range(map.x);
   let missing = min(max(1.0 - map.y, $small), blocked);
-  let lit = $bounce_odds * (blocked - missing);
+  let gained = $bounce_odds * (blocked - missing);
   return rgb(
-      $all_bounces(blocked, missing, lit, albedo.x),
-      $all_bounces(blocked, missing, lit, albedo.y),
-      $all_bounces(blocked, missing, lit, albedo.z));
+      $all_bounces(blocked, missing, gained, albedo.x),
+      $all_bounces(blocked, missing, gained, albedo.y),
+      $all_bounces(blocked, missing, gained, albedo.z));
 }
 )";
 
@@ -182,7 +182,7 @@ constexpr std::string_view kBounceAlbedo = R"(
 // The albedo to pass above where it varies over the surface: bounces bring the colour of the neighbourhood. blurred: the
 // albedo texture at the mip level log2(height range in texels). own: the albedo here. The result above is irradiance: it
 // is still multiplied by the albedo here, not by this one.
-fn @bounce_albedo(blurred: vec3, own: vec3) -> vec3 {
+fn @albedo_of_bounces(blurred: vec3, own: vec3) -> vec3 {
   return rgb(
       blurred.x + $own_share * (own.x - blurred.x),
       blurred.y + $own_share * (own.y - blurred.y),
@@ -215,7 +215,7 @@ fn @multi_bounce_irradiance(visibility: float, albedo: vec3) -> vec3 {
 const ShaderConstant kTiny{"$tiny", "1e-30"};
 // Stands for no missing light; its product with 1 − albedo stays above $tiny.
 const ShaderConstant kSmall{"$small", "1e-20"};
-// Measured: see bounce_albedo in the README.
+// Share of a texel's own albedo in what its bounces meet (fits/README.md).
 const ShaderConstant kOwnShare{"$own_share", "0.25"};
 
 ShaderConstant number(const char* name, double value) { return {name, shader_number(value)}; }

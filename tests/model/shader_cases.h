@@ -1,4 +1,5 @@
-// Models whose exported text the tests run, one grid of inputs for every language, and what the library gives.
+// Models whose exported text the tests run, one grid of inputs for every language, and what the library
+// gives.
 #pragma once
 
 #include <cmath>

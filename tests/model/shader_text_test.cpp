@@ -90,8 +90,7 @@ TEST(ShaderText, CppEqualsTheLibrary) {
   const std::string before =
       "struct Pair { float x, y; };\nstruct Rgb { float x, y, z; };\n" + std::string(kPutVector);
   expect_program_equals_library(
-      folder,
-      program(before, all_texts(Language::kCpp), "using namespace hemibake_model;\n", "Pair{x, y}"),
+      folder, program(before, all_texts(Language::kCpp), "using namespace hemibake_model;\n", "Pair{x, y}"),
       "-Wall -Wextra -Werror", "C++");
 }
 
@@ -126,9 +125,10 @@ struct color {
   float operator[](int i) const { return channels[i]; }
 };
 using Rgb = color;
-)" + std::string(kFunctions) + kPutColor;
-  expect_program_equals_library(
-      folder, program(before, all_texts(Language::kOsl), "", "color(x, y, 0.0f)"), "", "OSL");
+)" + std::string(kFunctions) +
+                             kPutColor;
+  expect_program_equals_library(folder, program(before, all_texts(Language::kOsl), "", "color(x, y, 0.0f)"),
+                                "", "OSL");
 }
 
 // Prints as bytes the functions of α that tell bounces apart.
@@ -185,9 +185,8 @@ TEST(ShaderText, EveryModelCompilesAsGlslAndHlsl) {
       return fmt::format("{} float x = v.w, y = v.x; {} rgb = v.xyz; {}{}, 1.0); }}\n", open,
                          std::string(pair) == "vec2(x, y)" ? "vec3" : "float3", close, call_of(shader, pair));
     };
-    const std::string glsl =
-        shader_text(shader.model, Language::kGlsl, {"a test"}, shader.name) +
-        main_of("vec2(x, y)", "in vec4 v; out vec4 c;\nvoid main() {", "c = vec4(");
+    const std::string glsl = shader_text(shader.model, Language::kGlsl, {"a test"}, shader.name) +
+                             main_of("vec2(x, y)", "in vec4 v; out vec4 c;\nvoid main() {", "c = vec4(");
     const std::string hlsl =
         shader_text(shader.model, Language::kHlsl, {"a test"}, shader.name) +
         main_of("float2(x, y)", "float4 main(float4 v : TEXCOORD0) : SV_Target {", "return float4(");
@@ -299,7 +298,7 @@ TEST(ShaderText, NothingIsLeftToReplace) {
       const std::string text = shader_text(shader.model, language, {});
       EXPECT_EQ(text.find_first_of("$@"), std::string::npos) << text;
       EXPECT_EQ(text.find("#escape"), std::string::npos) << text;
-      if (language != Language::kWgsl) EXPECT_EQ(text.find("let "), std::string::npos) << text;
+      EXPECT_EQ(text.find("let ") == std::string::npos, language != Language::kWgsl) << text;
     }
 }
 
