@@ -107,7 +107,7 @@ Prediction with_square(const Curves& curves, DirectModel direct) {
 Prediction with_quotient(const Curves& curves, DirectModel direct) {
   return fit_escape<2>(curves, direct, {{"q", 0.001, 1}, {"d", 0, 0.999}}, {{0.5, 0.5}},
                        [](const auto* p, const Direct& at) {
-                         return bounded_escape_share(at.factor, at.blocked, p[0], p[1]);
+                         return bounded_escape_share(at.factor, p[0] * (1.0 - p[1]), p[0]);
                        });
 }
 

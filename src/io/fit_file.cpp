@@ -132,9 +132,10 @@ std::vector<std::string> model_origin(const FitFile& file, ModelKind kind) {
   std::vector<std::string> lines = describe_fits(file.fits, kind);
   lines.insert(lines.begin(),
                std::string("Ambient occlusion with all bounces of light, by hemibake ") + kVersion + ".");
-  for (const char* name : {"input", "input_sha256", "command"})
-    if (file.provenance.contains(name) && file.provenance[name].is_string())
-      lines.push_back(fmt::format("{}: {}", name, file.provenance[name].get<std::string>()));
+  // Text travels further than the result folder: no folders, command lines or hashes of the maker.
+  if (file.provenance.contains("input") && file.provenance["input"].is_string())
+    lines.push_back(fmt::format(
+        "input: {}", std::filesystem::path(file.provenance["input"].get<std::string>()).filename().string()));
   return lines;
 }
 

@@ -22,8 +22,8 @@ nlohmann::ordered_json json_from_fits(const FitFile& file);
 // Throws InputError "FILE: NAME: …, expected …". path: for errors only.
 FitFile fits_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
-// Returns lines for the head of a model's shader text: version, formulas with their constants, input,
-// command. Throws InputError where a fit of the model is missing.
+// Returns lines for the head of a model's shader text: version, formulas with their constants, name of the
+// input without its folder. Throws InputError where a fit of the model is missing.
 std::vector<std::string> model_origin(const FitFile& file, ModelKind kind);
 
 FitFile read_fits(const std::filesystem::path& path);

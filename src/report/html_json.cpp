@@ -93,7 +93,7 @@ Json constants_of(const ShaderModel& model) {
 }
 
 Json json_from_model(const ReportModel& model, const Score* score) {
-  const auto text = [&](Language language) { return shader_text(model.model, language, model.origin); };
+  const auto text = [&](Language language) { return shader_text(any_model(model.model), language, model.origin); };
   return {{"id", model.id},
           {"title", model.title},
           {"constants", constants_of(model.model)},
