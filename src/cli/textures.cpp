@@ -1,3 +1,5 @@
+#include "cli/print/textures.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include "bake/record.h"
 #include "cli/options/bake_options.h"
 #include "cli/print/bake.h"
-#include "cli/print/textures.h"
 #include "cli/print/warnings.h"
 #include "cli/result_folder.h"
 #include "core/error.h"
@@ -60,8 +61,9 @@ std::vector<WrittenTexture> textures_of_bake(const TexturesOptions& options, con
                                              const Invocation& invocation) {
   for (const std::string& option : options.bake_option_names)
     if (invocation.given(option))
-      throw InputError(fmt::format("--{}: is of a bake to be made, but {} is made, expected a height map with it",
-                                   option, options.map.map.string()));
+      throw InputError(
+          fmt::format("--{}: is of a bake to be made, but {} is made, expected a height map with it", option,
+                      options.map.map.string()));
   const BakeFile file = read_bake(options.map.map);
   Provenance provenance = make_provenance(invocation.context.command, options.map.map);
   for (const auto& [key, value] : file.provenance.items())
@@ -89,7 +91,8 @@ std::vector<WrittenTexture> textures_of_map(TexturesOptions& options, const std:
   refuse_normal_map_without_y(options);
   resolve(options, {invocation.context,
                     [&](const std::string& option) {
-                      return option != "outputs" && invocation.given(option == "normal-y" ? kNormalMapY : option);
+                      return option != "outputs" &&
+                             invocation.given(option == "normal-y" ? kNormalMapY : option);
                     },
                     invocation.json});
   options.bake.spill_folder = options.folder;
@@ -107,8 +110,8 @@ int run_textures(TexturesOptions& options, const Invocation& invocation) {
   const std::string name = options.map.map.stem().string();
   const ResultFolder folder(options.folder);
   check_outputs(options, name);
-  const std::vector<WrittenTexture> textures = baked ? textures_of_bake(options, name, invocation)
-                                                     : textures_of_map(options, name, invocation);
+  const std::vector<WrittenTexture> textures =
+      baked ? textures_of_bake(options, name, invocation) : textures_of_map(options, name, invocation);
   invocation.print({{"output", options.folder.string()},
                     {"input", options.map.map.string()},
                     {"textures", json_from_textures(textures, options.textures)}},
@@ -123,8 +126,9 @@ std::vector<Field> options_of_bake(TexturesOptions& options) {
   for (Field& field : fields) {
     if (field.name == "MAP") {
       field.name = "INPUT";
-      field.help = "a bake (EXR as 'hemibake bake' writes it), or a height map, which is baked first with the "
-                   "options below: only what the textures need";
+      field.help =
+          "a bake (EXR as 'hemibake bake' writes it), or a height map, which is baked first with the "
+          "options below: only what the textures need";
       continue;
     }
     if (field.name == "normal-y") field.name = kNormalMapY;

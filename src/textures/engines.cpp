@@ -11,7 +11,8 @@ struct Conventions {
 
 // In the order of Engine.
 constexpr std::array kEngines = {
-    Conventions{NormalY::kDown, Packing::kNone, "_ambient_occlusion", "_bent_normals_base", "_normal_base", "_orm"},
+    Conventions{NormalY::kDown, Packing::kNone, "_ambient_occlusion", "_bent_normals_base", "_normal_base",
+                "_orm"},
     Conventions{NormalY::kDown, Packing::kOrm, "_AO", "_BN", "_N", "_ORM"},
     Conventions{NormalY::kUp, Packing::kMask, "_Occlusion", "_BentNormal", "_Normal", "_MaskMap"},
     Conventions{NormalY::kUp, Packing::kOrm, "_ao", "_bent_normal", "_normal", "_orm"},

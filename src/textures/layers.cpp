@@ -25,8 +25,7 @@ using TexelVector = std::function<glm::dvec3(size_t texel)>;
 Layer layer_of(const Bake& bake, const char* channel, const TexelValue& value) {
   Layer layer{channel, Grid<float>(bake.width, bake.height)};
   parallel_for(layer.values.size(), kGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      layer.values[i] = static_cast<float>(std::clamp(value(i), 0.0, 1.0));
+    for (size_t i = begin; i < end; ++i) layer.values[i] = static_cast<float>(std::clamp(value(i), 0.0, 1.0));
   });
   return layer;
 }

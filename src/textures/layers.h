@@ -15,13 +15,14 @@ struct Layer {
   Grid<float> values;   // 0..1
 };
 
-// Maps of other origin that are packed beside the AO, of the bake's size, 0..1; empty where nothing is packed.
+// Maps of other origin that are packed beside the AO, of the bake's size, 0..1; empty where nothing is
+// packed.
 struct PackedInputs {
   Grid<float> roughness, metallic;
 };
 
-// Reads the roughness and the metallic of the settings. Throws InputError naming the file where it is none, has
-// another size or a value outside 0..1.
+// Reads the roughness and the metallic of the settings. Throws InputError naming the file where it is none,
+// has another size or a value outside 0..1.
 PackedInputs read_packed_inputs(const TextureSettings& settings, int width, int height);
 
 // Returns the channels of one texture. settings: resolved; the bake passes check_planes (planes.h).

@@ -12,7 +12,7 @@
 namespace hemibake {
 
 struct ChannelRange {
-  std::string channel;  // "Y", or "R", "G", "B", "A"
+  std::string channel;                 // "Y", or "R", "G", "B", "A"
   double low = 0, mean = 0, high = 0;  // as stored, 0..1
 };
 

@@ -49,7 +49,8 @@ void expect_light(const Bake& bake, const Needs& needs) {
   if (needs.visibility && bake.visibility.empty()) {
     if (bake.irradiance.empty())
       throw InputError(
-          "has neither channel visibility nor irradiance.00, expected one of them for the textures asked for");
+          "has neither channel visibility nor irradiance.00, expected one of them for the textures asked "
+          "for");
     expect_plane(bake, bake.irradiance[0], "irradiance.00");
   } else if (needs.visibility) {
     expect_plane(bake, bake.visibility, "visibility");
@@ -69,9 +70,10 @@ void expect_one_surface(const Bake& bake) {
   }
   const double mean = outside / static_cast<double>(bake.visible_fraction.size());
   if (!(mean <= kMeanOutOfBounds))
-    throw InputError(fmt::format("channels ao and visibility are not of one bake: V is outside a^2..a(2-a) "
-                                 "by {:.3f} on average, expected at most {}",
-                                 mean, kMeanOutOfBounds));
+    throw InputError(
+        fmt::format("channels ao and visibility are not of one bake: V is outside a^2..a(2-a) "
+                    "by {:.3f} on average, expected at most {}",
+                    mean, kMeanOutOfBounds));
 }
 
 }  // namespace

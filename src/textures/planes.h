@@ -11,8 +11,8 @@ namespace hemibake {
 // resolved. bake: not yet resolved.
 void bake_only_what_textures_need(const TextureSettings& textures, BakeSettings& bake);
 
-// Throws InputError where the bake lacks a plane that one of the textures needs, a plane has another size than
-// the bake, or V and α are not of one bake: α² ≤ V ≤ α(2−α) holds of every surface.
+// Throws InputError where the bake lacks a plane that one of the textures needs, a plane has another size
+// than the bake, or V and α are not of one bake: α² ≤ V ≤ α(2−α) holds of every surface.
 void check_planes(const Bake& bake, const TextureSettings& textures);
 
 }  // namespace hemibake

@@ -33,7 +33,9 @@ std::vector<std::string> split(const std::string& text) {
 Value joined_by_commas(Value value) {
   value.fewest = value.most = 1;
   value.separated = false;
-  value.set = [set = std::move(value.set)](const std::vector<std::string>& words) { set(split(words.at(0))); };
+  value.set = [set = std::move(value.set)](const std::vector<std::string>& words) {
+    set(split(words.at(0)));
+  };
   return value;
 }
 
@@ -57,10 +59,11 @@ void resolve_suffixes(TextureSettings& settings) {
     const auto kind = std::ranges::find(kNames, word.substr(0, equals));
     const std::string suffix = equals == std::string::npos ? "" : word.substr(equals + 1);
     if (kind == kNames.end() || suffix.empty())
-      throw SettingError(
-          fmt::format("{{suffix}}: '{}', expected the name of a texture and its suffix, as visibility=_AO", word));
+      throw SettingError(fmt::format(
+          "{{suffix}}: '{}', expected the name of a texture and its suffix, as visibility=_AO", word));
     if (suffix.find('/') != std::string::npos)
-      throw SettingError(fmt::format("{{suffix}}: '{}' names a folder, expected the end of a file's name", word));
+      throw SettingError(
+          fmt::format("{{suffix}}: '{}' names a folder, expected the end of a file's name", word));
     settings.suffixes.at(static_cast<size_t>(kind - kNames.begin())) = suffix;
   }
 }
@@ -81,7 +84,8 @@ void resolve_kinds(TextureSettings& settings) {
 
 // Names that differ in case only are one file on some systems.
 std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
 
@@ -107,18 +111,20 @@ std::vector<Field> texture_fields(TextureSettings& s) {
   Value albedo = numbers(s.albedo, 3, 0, 1);
   Value suffixes = texts(s.suffix_words);
   return {
-      texture_field("maps", joined_by_commas(choices(s.kinds, unpacked)),
-                    "separated by commas; default: visibility (unless packed), bent, normal. Engines mean "
-                    "visibility (cosine-weighted) by AO; ao is the uniform fraction; bounce is visibility with all "
-                    "bounces at one albedo; bounce-map has both, in R and G"),
+      texture_field(
+          "maps", joined_by_commas(choices(s.kinds, unpacked)),
+          "separated by commas; default: visibility (unless packed), bent, normal. Engines mean "
+          "visibility (cosine-weighted) by AO; ao is the uniform fraction; bounce is visibility with all "
+          "bounces at one albedo; bounce-map has both, in R and G"),
       texture_field("engine", choice(s.engine, {"substance", "unreal", "unity", "godot", "gltf"}),
                     "suffixes, green channel and packing as it takes them; options given too win"),
       texture_field("format", choice(s.coding.format, format_names()),
                     "PNG of 16 or 8 bits, EXR or TIFF of 32-bit floats; all linear, 0..1"),
       texture_field("dither", flag(s.coding.dither), "with png8: dither, so that means keep their fractions"),
-      texture_field("normal-y", choice(s.normal_y, {"up", "down"}),
-                    "green of bent and normal grows against the image rows (up, OpenGL; default) or along them "
-                    "(down, DirectX)"),
+      texture_field(
+          "normal-y", choice(s.normal_y, {"up", "down"}),
+          "green of bent and normal grows against the image rows (up, OpenGL; default) or along them "
+          "(down, DirectX)"),
       texture_field("bent-length", choice(s.bent_length, {"unit", "visibility", "ao"}),
                     "of the bent normal B: 1; such that normal . B is the visibility; or the uniform AO"),
       shown_as(texture_field("albedo", joined_by_commas(albedo), "of irradiance: one number 0..1, or R,G,B"),
@@ -126,9 +132,10 @@ std::vector<Field> texture_fields(TextureSettings& s) {
       texture_field("pack", choice(s.packing, {"none", "orm", "mask"}),
                     "orm: occlusion, roughness, metallic in R, G, B; mask: metallic, occlusion, detail (1), "
                     "smoothness in R, G, B, A, as Unity takes them"),
-      texture_field("occlusion", choice_of(
-                                     occlusions, [&s] { return static_cast<size_t>(s.occlusion); },
-                                     [&s](size_t index) { s.occlusion = static_cast<TextureKind>(index); }),
+      texture_field("occlusion",
+                    choice_of(
+                        occlusions, [&s] { return static_cast<size_t>(s.occlusion); },
+                        [&s](size_t index) { s.occlusion = static_cast<TextureKind>(index); }),
                     "the AO that --pack packs"),
       shown_as(texture_field("roughness", text(s.roughness),
                              "packed: a number 0..1, or an image of the map's size [1]"),

@@ -23,16 +23,17 @@ enum class BentLength { kUnit, kVisibility, kAo };
 
 struct TextureSettings {
   std::optional<Engine> engine;
-  std::vector<TextureKind> kinds;  // empty: visibility (unless it is packed), bent, normal; then with the packed
+  std::vector<TextureKind>
+      kinds;  // empty: visibility (unless it is packed), bent, normal; then with the packed
   TextureCoding coding;
-  std::optional<NormalY> normal_y;  // absent: the engine's, else up
-  std::optional<Packing> packing;   // absent: the engine's, else none
+  std::optional<NormalY> normal_y;                   // absent: the engine's, else up
+  std::optional<Packing> packing;                    // absent: the engine's, else none
   TextureKind occlusion = TextureKind::kVisibility;  // the AO that is packed
   std::string roughness = "1", metallic = "0";       // packed: a number 0..1, or an image of the map's size
   BentLength bent_length = BentLength::kUnit;
-  std::vector<double> albedo = {0.5};  // of the irradiance: one, or R, G and B
-  std::vector<std::string> suffix_words;               // as given: "visibility=_AO"
-  std::array<std::string, kTextureKinds> suffixes;     // by kind; filled in by resolve
+  std::vector<double> albedo = {0.5};               // of the irradiance: one, or R, G and B
+  std::vector<std::string> suffix_words;            // as given: "visibility=_AO"
+  std::array<std::string, kTextureKinds> suffixes;  // by kind; filled in by resolve
 
   bool wants(TextureKind kind) const;
 };

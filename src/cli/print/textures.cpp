@@ -28,9 +28,10 @@ std::string describe_values(const WrittenTexture& texture) {
 std::string describe_textures(const std::vector<WrittenTexture>& textures, const TextureSettings& settings,
                               const std::filesystem::path& folder) {
   const TextureFormatInfo& format = texture_format_info(settings.coding.format);
-  std::string text = fmt::format("{}: {} textures, {} bits a channel{}{}, linear, green {}\n", folder.string(),
-                                 textures.size(), format.bits, format.is_float ? " (float)" : "",
-                                 settings.coding.dither ? " (dithered)" : "", normal_y_name(settings));
+  std::string text =
+      fmt::format("{}: {} textures, {} bits a channel{}{}, linear, green {}\n", folder.string(),
+                  textures.size(), format.bits, format.is_float ? " (float)" : "",
+                  settings.coding.dither ? " (dithered)" : "", normal_y_name(settings));
   size_t widest = 0;
   for (const WrittenTexture& texture : textures)
     widest = std::max(widest, texture.path.filename().string().size());
