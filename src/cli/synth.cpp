@@ -86,7 +86,7 @@ CommandSetup setup_synth() {
              fmt::format("texels; width x height at most {}", kMaxTexels)),
       option("height", whole(options->height, 1, kMaxSide), "texels, down the image"),
       option("seed", whole(options->seed, 0),
-             "another number, another map (bricks, shapes, concrete, noise)"),
+             "another number, another map (of the materials, bricks to terrain)"),
       option("angle", number(options->angle_deg, kMinSyntheticAngleDeg, kMaxSyntheticAngleDeg),
              "degrees, of bowl and groove; default in brackets below")};
   setup.footer = kinds_help();

@@ -6,6 +6,7 @@
 
 #include "fitting/fit.h"
 #include "fitting/fitted_model.h"
+#include "fitting/map_comparison.h"
 #include "io/provenance.h"
 
 namespace hemibake {
@@ -13,6 +14,7 @@ namespace hemibake {
 struct FitFile {
   std::vector<NamedFit> fits;
   Provenance provenance;
+  MapComparison comparison;  // without maps where it is unknown; written, but not read back
 };
 
 nlohmann::ordered_json json_from_fits(const FitFile& file);

@@ -93,4 +93,40 @@ Spot nearest_spot(double x, double y, Tile tile, double frequency, uint64_t seed
   return nearest;
 }
 
+VoronoiCell voronoi_cell(double x, double y, Tile tile, double frequency, double jitter, uint64_t seed) {
+  const int cells_x = cells_along(tile.width, frequency), cells_y = cells_along(tile.height, frequency);
+  const LatticePoint p = lattice_point(x, y, tile, cells_x, cells_y);
+  VoronoiCell found{0, 0, std::numeric_limits<double>::infinity(), 0};
+  const auto from_site = [&](int i, int j) {
+    const uint64_t bits =
+        hash_bits(seed, wrap_index(p.cell_x + i, cells_x), wrap_index(p.cell_y + j, cells_y));
+    const double site_x = 0.5 + jitter * (hash_unit(bits, 0, 0) - 0.5);
+    const double site_y = 0.5 + jitter * (hash_unit(bits, 0, 1) - 0.5);
+    return VoronoiCell{(p.x - i - site_x) * tile.width / cells_x, (p.y - j - site_y) * tile.height / cells_y,
+                       0, bits};
+  };
+  int nearest_i = 0, nearest_j = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int j = -1; j <= 1; ++j) {
+    for (int i = -1; i <= 1; ++i) {
+      const VoronoiCell site = from_site(i, j);
+      const double distance = std::hypot(site.x, site.y);
+      if (distance >= nearest) continue;
+      nearest = distance;
+      nearest_i = i, nearest_j = j;
+      found.x = site.x, found.y = site.y, found.bits = site.bits;
+    }
+  }
+  for (int j = nearest_j - 2; j <= nearest_j + 2; ++j) {
+    for (int i = nearest_i - 2; i <= nearest_i + 2; ++i) {
+      if (i == nearest_i && j == nearest_j) continue;
+      const VoronoiCell other = from_site(i, j);
+      const double apart = std::hypot(found.x - other.x, found.y - other.y);
+      const double farther = std::hypot(other.x, other.y);
+      found.border = std::min(found.border, (farther * farther - nearest * nearest) / (2 * apart));
+    }
+  }
+  return found;
+}
+
 }  // namespace hemibake

@@ -45,4 +45,13 @@ struct Spot {
 };
 Spot nearest_spot(double x, double y, Tile tile, double frequency, uint64_t seed);
 
+// Returns the Voronoi cell that a point lies in, of one site in every lattice cell of the tile.
+struct VoronoiCell {
+  double x, y;    // from the site to the point, units of the longer side
+  double border;  // distance to the nearest bisector with another site, 0..
+  uint64_t bits;  // hashed, of the site: for its size, height and the like
+};
+// jitter: how far sites leave the centres of their lattice cells, 0 (not at all) to 1 (anywhere in them).
+VoronoiCell voronoi_cell(double x, double y, Tile tile, double frequency, double jitter, uint64_t seed);
+
 }  // namespace hemibake

@@ -23,6 +23,18 @@ constexpr std::array kKinds = {
     SyntheticKindInfo{
         SyntheticKind::kConcrete, "concrete", "shallow cast concrete with pores and fine grain", {}},
     SyntheticKindInfo{SyntheticKind::kNoise, "noise", "fractal gradient noise, hills down to grain", {}},
+    SyntheticKindInfo{SyntheticKind::kCobbles, "cobbles", "rounded paving stones in sandy joints", {}},
+    SyntheticKindInfo{SyntheticKind::kGravel, "gravel", "pebbles of three sizes on one another", {}},
+    SyntheticKindInfo{SyntheticKind::kPlanks, "planks", "weathered boards with open joints and grain", {}},
+    SyntheticKindInfo{
+        SyntheticKind::kTiles, "tiles", "square tiles with sunken joints, some sagged or gone", {}},
+    SyntheticKindInfo{SyntheticKind::kWeave, "weave", "round strands woven one over, one under", {}},
+    SyntheticKindInfo{SyntheticKind::kMud, "mud", "dried mud: curled plates between two sizes of cracks", {}},
+    SyntheticKindInfo{SyntheticKind::kStairs, "stairs", "flights side by side that climb and descend", {}},
+    SyntheticKindInfo{SyntheticKind::kTrenches, "trenches", "winding steep trenches in flat ground", {}},
+    SyntheticKindInfo{
+        SyntheticKind::kDunes, "dunes", "wind-blown crests with a steep lee side, and ripples", {}},
+    SyntheticKindInfo{SyntheticKind::kTerrain, "terrain", "ridged mountains with filled valleys", {}},
     SyntheticKindInfo{SyntheticKind::kFlat, "flat", "flat ground", {}},
     SyntheticKindInfo{SyntheticKind::kBowl, "bowl",
                       "spherical-cap pit of polar half-angle ANGLE in flat ground", 60},
@@ -89,6 +101,26 @@ SyntheticMap synthesize(SyntheticKind kind, const SyntheticOptions& requested) {
       return {stretched(make_concrete(options)), 0.05};
     case SyntheticKind::kNoise:
       return {stretched(make_noise(options)), 0.1};
+    case SyntheticKind::kCobbles:
+      return {stretched(make_cobbles(options)), 0.06};
+    case SyntheticKind::kGravel:
+      return {stretched(make_gravel(options)), 0.08};
+    case SyntheticKind::kPlanks:
+      return {stretched(make_planks(options)), 0.05};
+    case SyntheticKind::kTiles:
+      return {stretched(make_tiles(options)), 0.04};
+    case SyntheticKind::kWeave:
+      return {stretched(make_weave(options)), 0.08};
+    case SyntheticKind::kMud:
+      return {stretched(make_mud(options)), 0.07};
+    case SyntheticKind::kStairs:
+      return {stretched(make_stairs(options)), 0.3};
+    case SyntheticKind::kTrenches:
+      return {stretched(make_trenches(options)), 0.12};
+    case SyntheticKind::kDunes:
+      return {stretched(make_dunes(options)), 0.08};
+    case SyntheticKind::kTerrain:
+      return {stretched(make_terrain(options)), 0.25};
     case SyntheticKind::kFlat:
       return {Grid<float>(options.width, options.height), 0.1};
     case SyntheticKind::kBowl: {

@@ -9,7 +9,27 @@
 
 namespace hemibake {
 
-enum class SyntheticKind { kBricks, kShapes, kConcrete, kNoise, kFlat, kBowl, kGroove, kCanyon, kStep };
+enum class SyntheticKind {
+  kBricks,
+  kShapes,
+  kConcrete,
+  kNoise,
+  kCobbles,
+  kGravel,
+  kPlanks,
+  kTiles,
+  kWeave,
+  kMud,
+  kStairs,
+  kTrenches,
+  kDunes,
+  kTerrain,
+  kFlat,
+  kBowl,
+  kGroove,
+  kCanyon,
+  kStep
+};
 
 // Angles of the kinds that have one.
 inline constexpr double kMinSyntheticAngleDeg = 1, kMaxSyntheticAngleDeg = 89;

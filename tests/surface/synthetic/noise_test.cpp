@@ -60,6 +60,38 @@ TEST(Noise, StaysInRangeAndIsContinuous) {
   EXPECT_LT(highest, 1);
 }
 
+TEST(Noise, VoronoiCellsRepeatWithTheTile) {
+  const Tile tile{1, 0.375};
+  for (int i = 0; i < 200; ++i) {
+    const double x = hash_unit(1, i, 0), y = hash_unit(1, i, 1);
+    const VoronoiCell cell = voronoi_cell(x, y, tile, 7, 0.8, 3);
+    const VoronoiCell again = voronoi_cell(x - tile.width, y + 2 * tile.height, tile, 7, 0.8, 3);
+    EXPECT_EQ(cell.bits, again.bits);
+    EXPECT_NEAR(cell.border, again.border, 1e-12);
+  }
+}
+
+// Unjittered sites stand at the centres of a square lattice, whose bisectors are its lines.
+TEST(Noise, VoronoiCellsOfALatticeAreItsSquares) {
+  for (int i = 0; i < 200; ++i) {
+    const double x = hash_unit(3, i, 0), y = hash_unit(3, i, 1);
+    const VoronoiCell cell = voronoi_cell(x, y, {}, 4, 0, 5);
+    EXPECT_NEAR(cell.x, x - (std::floor(4 * x) + 0.5) / 4, 1e-12);
+    EXPECT_NEAR(cell.y, y - (std::floor(4 * y) + 0.5) / 4, 1e-12);
+    EXPECT_NEAR(cell.border, 0.125 - std::max(std::abs(cell.x), std::abs(cell.y)), 1e-12);
+  }
+}
+
+// A step along the ground changes the distance to the border by no more than itself, also into the next cell.
+TEST(Noise, VoronoiBordersAreContinuous) {
+  constexpr double kStep = 1e-3;
+  for (int i = 0; i < 20000; ++i) {
+    const double x = hash_unit(2, i, 0), y = hash_unit(2, i, 1);
+    EXPECT_NEAR(voronoi_cell(x + kStep, y, {}, 6, 1, 4).border, voronoi_cell(x, y, {}, 6, 1, 4).border,
+                kStep + 1e-12);
+  }
+}
+
 TEST(Noise, SmoothStep) {
   EXPECT_EQ(smooth_step(1, 3, 0), 0);
   EXPECT_EQ(smooth_step(1, 3, 2), 0.5);
