@@ -52,10 +52,12 @@ T bounded_direct_factor(X ao, const T& k0, const T& k1) {
   return ao * (T(1) + (X(1) - ao) * (k0 + (k1 - k0) * (ao * ao)));
 }
 
-// Returns 1 − bounded_direct_factor without cancellation near α = 1.
+// Returns 1 − bounded_direct_factor, (1−α)((1−α) + α(1−s)), without cancellation near α = 1, also with k1
+// = 1.
 template <class T, class X>
 T bounded_blocked_factor(X ao, const T& k0, const T& k1) {
-  return (X(1) - ao) * (T(1) - ao * (k0 + (k1 - k0) * (ao * ao)));
+  const X rest = X(1) - ao;
+  return rest * (rest + ao * ((T(1) - k1) + (k1 - k0) * (rest * (X(1) + ao))));
 }
 
 // Returns 1 − τ of the bounded model, the share of the light under way that each bounce sends out to the sky:

@@ -56,7 +56,8 @@ fn @direct_irradiance(ao: float) -> float {
 // 1 - F0, without cancellation near ao = 1.
 fn $blocked_irradiance(ao: float) -> float {
   let a = $unit_range(ao);
-  return (1.0 - a) * (1.0 - a * ($k0 + ($k1 - $k0) * a * a));
+  let b = 1.0 - a;
+  return b * (b + a * (1.0 - $k1 + ($k1 - $k0) * b * (1.0 + a)));
 }
 
 // 1 - tau: the share of the light between the walls that each bounce sends out to the sky.

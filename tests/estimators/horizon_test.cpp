@@ -114,8 +114,8 @@ TEST(Horizon, BothKindsComeFromOneSearch) {
   EXPECT_EQ(of_visibility.other_ao.values, of_ao.ao.values);
 }
 
-// With many azimuths and steps both are the tracer's, which takes the horizon of every triangle. What remains:
-// samples that jump over a crest, here 12 steps a texel, and what lies beyond the radius.
+// With many azimuths and steps both are the tracer's, which takes the horizon of every triangle. What
+// remains: samples that jump over a crest, here 12 steps a texel, and what lies beyond the radius.
 TEST(Horizon, VisibilityAndAoConvergeToTheTracer) {
   for (const SyntheticKind kind : {SyntheticKind::kNoise, SyntheticKind::kBricks, SyntheticKind::kConcrete}) {
     const Surface surface = synthetic_surface(kind, 32, 32);

