@@ -151,7 +151,7 @@ CommandSetup setup_textures() {
   setup.footer =
       "Example: hemibake textures bricks.png -o out --amplitude 0.05 --engine unreal\n"
       "writes out/bricks_BN.png, bricks_N.png and bricks_ORM.png. Light with bounces (--maps\n"
-      "visibility,bounce) takes some minutes a million texels, the others seconds.";
+      "visibility,bounce) takes far longer than the others.";
   setup.run = [options](const Invocation& invocation) { return run_textures(*options, invocation); };
   return setup;
 }
