@@ -126,9 +126,10 @@ class Outputs : public CliTest {
 
 TEST_F(Outputs, AreExactlyThoseAskedFor) {
   write_map("map.exr", SyntheticKind::kShapes, 16, 16);
-  const std::set<std::string> light = {"irradiance.00", "irradiance.01", "total", "residual"};
+  const std::set<std::string> light = {"visibility", "irradiance.00", "irradiance.01",
+                                       "total",      "residual",      "bounce"};
   using Names = std::set<std::string>;
-  EXPECT_EQ(channels_of("--outputs ao"), Names({"ao"}));
+  EXPECT_EQ(channels_of("--outputs ao"), Names({"ao", "visibility"}));
   EXPECT_EQ(channels_of("--outputs irradiance"), light);
   EXPECT_EQ(channels_of("--outputs bent,normal"),
             Names({"bent.X", "bent.Y", "bent.Z", "normal.X", "normal.Y", "normal.Z"}));
