@@ -36,21 +36,36 @@ struct MapPlan {
 std::vector<MapPlan> plan_maps() {
   const std::filesystem::path reference = HEMIBAKE_REFERENCE_DIR, maps = HEMIBAKE_SOURCE_DIR "/heightmaps";
   std::vector<MapPlan> plans = {
-      {"cobbles", 0.06, 1, {}, {}, true}, {"cobbles", 0.15, 2},
-      {"gravel", 0.08, 1, {}, {}, true},  {"gravel", 0.04, 2},
-      {"planks", 0.05, 1},                {"planks", 0.12, 2},
-      {"tiles", 0.04, 1, {}, {}, true},   {"tiles", 0.12, 2},
-      {"weave", 0.08, 1},                 {"weave", 0.2, 2},
-      {"mud", 0.07, 1, {}, {}, true},     {"mud", 0.15, 2},
-      {"stairs", 0.3, 1, {}, {}, true},   {"stairs", 0.12, 2},
-      {"trenches", 0.12, 1, {}, {}, true}, {"trenches", 0.3, 2},
-      {"dunes", 0.08, 1},                 {"dunes", 0.25, 2},
-      {"terrain", 0.25, 1, {}, {}, true}, {"terrain", 0.5, 2},
-      {"bricks", 0.05, 2, {}, {}, true},  {"shapes", 0.2, 2, {}, {}, true},
-      {"concrete", 0.15, 2},              {"noise", 0.3, 2, {}, {}, true},
-      {"groove", 0.25, 1},                {"bowl", 0.35, 1},
-      {"bricks", 0.1, 1, maps / "bricks.png"},     {"shapes", 0.45, 1, maps / "shapes.png"},
-      {"concrete", 0.05, 1, maps / "concrete.png"}, {"noise", 0.1, 1, maps / "noise.png"},
+      {"cobbles", 0.06, 1, {}, {}, true},
+      {"cobbles", 0.15, 2},
+      {"gravel", 0.08, 1, {}, {}, true},
+      {"gravel", 0.04, 2},
+      {"planks", 0.05, 1},
+      {"planks", 0.12, 2},
+      {"tiles", 0.04, 1, {}, {}, true},
+      {"tiles", 0.12, 2},
+      {"weave", 0.08, 1},
+      {"weave", 0.2, 2},
+      {"mud", 0.07, 1, {}, {}, true},
+      {"mud", 0.15, 2},
+      {"stairs", 0.3, 1, {}, {}, true},
+      {"stairs", 0.12, 2},
+      {"trenches", 0.12, 1, {}, {}, true},
+      {"trenches", 0.3, 2},
+      {"dunes", 0.08, 1},
+      {"dunes", 0.25, 2},
+      {"terrain", 0.25, 1, {}, {}, true},
+      {"terrain", 0.5, 2},
+      {"bricks", 0.05, 2, {}, {}, true},
+      {"shapes", 0.2, 2, {}, {}, true},
+      {"concrete", 0.15, 2},
+      {"noise", 0.3, 2, {}, {}, true},
+      {"groove", 0.25, 1},
+      {"bowl", 0.35, 1},
+      {"bricks", 0.1, 1, maps / "bricks.png"},
+      {"shapes", 0.45, 1, maps / "shapes.png"},
+      {"concrete", 0.05, 1, maps / "concrete.png"},
+      {"noise", 0.1, 1, maps / "noise.png"},
   };
   if (std::filesystem::exists(reference / "WallHeight.png")) {
     plans.push_back({"wall", 0.1, 1, reference / "WallHeight.png"});
@@ -63,7 +78,8 @@ LoadedMap make_map(const MapPlan& plan, int side) {
   LoadedMap map;
   map.amplitude_m = plan.amplitude_m;
   if (plan.file.empty()) {
-    const SyntheticKindInfo& info = *std::ranges::find(synthetic_kinds(), plan.kind, &SyntheticKindInfo::name);
+    const SyntheticKindInfo& info =
+        *std::ranges::find(synthetic_kinds(), plan.kind, &SyntheticKindInfo::name);
     SyntheticMap made =
         synthesize(info.kind, {.width = side, .height = side, .seed = plan.seed, .angle_rad = {}});
     map.surface = make_surface(std::move(made.heights), 1, plan.amplitude_m, Edge::kWrap);
@@ -142,7 +158,7 @@ MapTruth bake_truth(const MapPlan& plan, int side, int azimuths) {
   truth.kind = plan.kind;
   truth.height_range_texels = height_range_m(map.surface) / map.surface.texel_size_m;
   truth.visibility = transport.direct_over_pi;
-  truth.escape = transport.visible_fraction;
+  truth.escape = baked.planes.visible_fraction;
   truth.normal_z = Grid<float>(map.surface.width(), map.surface.height());
   for (size_t i = 0; i < truth.size(); ++i) truth.normal_z[i] = map.surface.normals[i].z;
   const size_t patches = transport.bounce_matrix().rows;
@@ -162,7 +178,8 @@ void visit_planes(MapTruth& truth, const Visit& visit) {
 
 void keep(MapTruth& truth, const std::filesystem::path& path) {
   std::ofstream file(path, std::ios::binary);
-  file << truth.visibility.width << ' ' << truth.visibility.height << ' ' << truth.height_range_texels << '\n';
+  file << truth.visibility.width << ' ' << truth.visibility.height << ' ' << truth.height_range_texels
+       << '\n';
   visit_planes(truth, [&](Grid<float>& plane) {
     file.write(reinterpret_cast<const char*>(plane.values.data()),
                static_cast<std::streamsize>(plane.size() * sizeof(float)));
@@ -193,7 +210,8 @@ std::vector<MapTruth> bake_truths(int side, int azimuths, const std::filesystem:
   for (const MapPlan& plan : plan_maps()) {
     const std::filesystem::path path =
         folder / fmt::format("{}_{}_{}{}_{}_{}.planes", plan.kind, plan.amplitude_m, plan.seed,
-                             plan.normal_map.empty() ? "" : "_normals", plan.file.empty() ? side : 0, azimuths);
+                             plan.normal_map.empty() ? "" : "_normals", plan.file.empty() ? side : 0,
+                             azimuths);
     MapTruth truth;
     const bool kept = !folder.empty() && take_kept(plan, path, truth);
     const double start = process_cpu_seconds();
