@@ -83,7 +83,9 @@ std::optional<LinkEnergy> energy_of(const PreparedBake& prepared, const LightTra
 std::optional<Bounces> bounces_of(const BakeSettings& settings, const LightTransport& transport) {
   if (!settings.wants(BakeOutput::kIrradiance)) return std::nullopt;
   if (!settings.needs_form_factors()) return direct_light(transport);
-  return bounce_light(transport, {settings.bounces, settings.converge, settings.max_bounces});
+  BounceOptions options{settings.bounces, settings.converge, settings.max_bounces, std::nullopt};
+  if (settings.makes_bounce_plane()) options.bounce_albedo = settings.bounce_albedo;
+  return bounce_light(transport, options);
 }
 
 std::optional<ErrorEstimate> errors_of(const PreparedBake& prepared, const LightTransport& transport,
@@ -108,10 +110,14 @@ void keep_planes(const Surface& surface, LightTransport& transport, BakeResult& 
   if (result.settings.wants(BakeOutput::kAo)) planes.visible_fraction = std::move(transport.visible_fraction);
   if (result.settings.wants(BakeOutput::kBent)) planes.bent_normals = std::move(transport.bent_normals);
   if (result.settings.wants(BakeOutput::kNormal)) planes.normals = surface.normals;
-  if (!result.settings.wants(BakeOutput::kIrradiance)) return;
+  const bool irradiance = result.settings.wants(BakeOutput::kIrradiance);
+  if (irradiance || result.settings.wants(BakeOutput::kAo)) planes.visibility = transport.direct_over_pi;
+  if (!irradiance) return;
   planes.irradiance = std::move(result.bounces->irradiance);
   planes.total = std::move(result.bounces->total);
   planes.residual = std::move(result.bounces->residual);
+  planes.bounce = std::move(result.bounces->at_albedo);
+  if (!planes.bounce.empty()) planes.bounce_albedo = *result.settings.bounce_albedo;
 }
 
 }  // namespace

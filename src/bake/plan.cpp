@@ -85,12 +85,12 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
   BakePlan plan;
   plan.surface_bytes = texels * 16 + options.scene_bytes;
   // α, E₀/π and the bent normal; then every bounce, total and residual as planes; under way, four vectors of
-  // doubles for texels; for patches their direct light, a copy of the light in float, and three vectors of
-  // doubles twice, in the bounces and in the estimate of errors: the allocator keeps the first three.
+  // doubles for texels; for patches their direct light, a copy of the light in float, four vectors of doubles
+  // in the bounces and three in the estimate of errors: the allocator keeps the former.
   plan.plane_bytes = texels * (20 + 4 * static_cast<size_t>(options.kept_planes));
   if (options.with_links) {
     const size_t patches = make_patches(surface, options.patch_kind).count;
-    plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 3) + 32) + patches * 56;
+    plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 5) + 32) + patches * 64;
     // Light and residual of the solver, the four directions it keeps, and at most 32 bytes for its groups.
     if (options.converges) plan.plane_bytes += texels * 8 + patches * (8 * (2 + 2 * 4) + 32);
   }

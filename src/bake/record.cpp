@@ -152,7 +152,7 @@ void read_fields(const Provenance& provenance, const std::filesystem::path& path
   for (const Field& field : fields) {
     if (field.key.empty()) continue;
     const bool is_there = provenance.is_object() && provenance.contains(field.key);
-    if (!is_there && !field.recorded()) continue;
+    if (!is_there && (field.may_be_missing || !field.recorded())) continue;
     if (!is_there)
       throw InputError(fmt::format("{}: it does not say its {}, expected a bake of this version",
                                    path.string(), field.key));

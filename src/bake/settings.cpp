@@ -42,6 +42,12 @@ Field when(std::function<bool()> has_meaning, Field field) {
   return field;
 }
 
+// Marks a field that bakes of 0.1.0 do not record.
+Field with_default(Field field) {
+  field.may_be_missing = true;
+  return field;
+}
+
 // Applies what the preset stands for, where the user did not set it.
 void apply_mayaux2018(MapSettings& map, BakeSettings& settings, const IsGiven& given) {
   const auto set = [&given](const char* name, auto& setting, const auto& value) {
@@ -117,6 +123,10 @@ bool BakeSettings::wants(BakeOutput output) const {
 
 bool BakeSettings::needs_form_factors() const {
   return trace_form_factors || (wants(BakeOutput::kIrradiance) && (bounces > 0 || converge));
+}
+
+bool BakeSettings::makes_bounce_plane() const {
+  return bounce_albedo && wants(BakeOutput::kIrradiance) && needs_form_factors();
 }
 
 std::vector<Field> map_fields(MapSettings& s) {
@@ -220,6 +230,12 @@ std::vector<Field> bake_fields(BakeSettings& s) {
                     "texel")),
       when(converges, recorded("max-bounces", "max_bounces", "Light", whole(s.max_bounces, 1, kMaxBounces),
                                "where --converge gives up")),
+
+      with_default(
+          when([&s] { return s.makes_bounce_plane(); },
+               recorded("bounce-albedo", "bounce_albedo", "Light", number(s.bounce_albedo, 0.5, 0.99),
+                        "albedo of the plane 'bounce': all light at this albedo, the second texture of "
+                        "the bounce map"))),
 
       when(has_target,
            recorded("target-error", "target_error", "Tracing", number(s.target_error, 1e-4, 0.5),

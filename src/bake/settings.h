@@ -66,6 +66,7 @@ struct BakeSettings {
   int bounces = 20;                // stored one by one
   std::optional<double> converge;  // largest residual of a texel, over π
   int max_bounces = 2000;
+  std::optional<double> bounce_albedo = 0.9;  // of the plane `bounce`; absent: not made
 
   std::vector<BakeOutput> outputs = {BakeOutput::kAo, BakeOutput::kIrradiance, BakeOutput::kBent,
                                      BakeOutput::kNormal};
@@ -81,6 +82,8 @@ struct BakeSettings {
   bool wants(BakeOutput output) const;
   // Returns whether form factors are traced: for bounces, or because they are asked for.
   bool needs_form_factors() const;
+  // Returns whether the plane `bounce` is made.
+  bool makes_bounce_plane() const;
 };
 
 // The fields refer to `settings`, which must outlive them.

@@ -15,6 +15,7 @@
 #include "cli/print/warnings.h"
 #include "core/error.h"
 #include "io/file_context.h"
+#include "io/output_file.h"
 
 namespace hemibake {
 namespace {
@@ -29,6 +30,10 @@ struct BakeCommandOptions : BakeOptions {
 
 void check_outputs(const BakeCommandOptions& options) {
   if (options.output.empty()) throw InputError("--output: missing, expected -o BAKE.exr");
+  const std::string extension = lower_case_extension(options.output);
+  if (extension == ".png" || extension == ".tif" || extension == ".tiff")
+    throw InputError(fmt::format("{}: a bake is an .exr, expected one ('hemibake textures' writes {} files)",
+                                 options.output.string(), extension));
   check_bake_output(options.map, options.output, {".exr"});
   if (!options.links.empty()) check_bake_output(options.map, options.links, {".h5", ".hdf5"});
 }

@@ -21,6 +21,7 @@ namespace hemibake {
 // One per file in cli/.
 CommandSetup setup_synth();
 CommandSetup setup_bake();
+CommandSetup setup_textures();
 CommandSetup setup_curves();
 CommandSetup setup_fit();
 CommandSetup setup_compare();
@@ -40,6 +41,7 @@ constexpr int kExitInterrupted = 130;
 constexpr std::array kCommands = {
     Command{"synth", "write a synthetic height map", setup_synth},
     Command{"bake", "trace the light on a height map", setup_bake},
+    Command{"textures", "images of a bake for an engine: AO, bent normals, light, packed", setup_textures},
     Command{"curves", "sort the texels of a bake by AO: mean and spread of every bounce", setup_curves},
     Command{"fit", "fit models to curves", setup_fit},
     Command{"compare", "fit every candidate model to each of several curves, measure it on the others",

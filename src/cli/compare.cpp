@@ -1,13 +1,16 @@
 #include "cli/print/compare.h"
 
+#include <fmt/format.h>
+
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "cli/curve_inputs.h"
 #include "cli/options/command.h"
 #include "fitting/candidates.h"
-#include "io/curves_file.h"
 
 namespace hemibake {
 namespace {
@@ -17,13 +20,19 @@ struct CompareOptions {
 };
 
 int run_compare(const CompareOptions& options, const Invocation& invocation) {
+  std::vector<std::string> skipped;
+  std::vector<ComparedMap> maps;
   std::vector<Curves> sets;
-  for (const std::string& path : options.curves) sets.push_back(read_curves(path));
+  for (CurveInput& input : read_curve_inputs(options.curves, skipped)) {
+    maps.push_back({input.map.name, input.path});
+    sets.push_back(std::move(input.map.curves));
+  }
   std::vector<ComparedCandidate> compared;
   for (const Candidate& candidate : candidates())
-    compared.push_back({&candidate, compare_candidate(candidate, sets)});
-  invocation.print(json_from_comparisons(compared, options.curves),
-                   text_from_comparisons(compared, options.curves));
+    if (!candidate.needs_ao || sets[0].index == CurveIndex::kAo)
+      compared.push_back({&candidate, compare_candidate(candidate, sets)});
+  for (const std::string& line : skipped) fmt::print(stderr, "hemibake: {}\n", line);
+  invocation.print(json_from_comparisons(compared, maps), text_from_comparisons(compared, maps));
   return 0;
 }
 
@@ -34,7 +43,8 @@ CommandSetup setup_compare() {
   CommandSetup setup;
   setup.fields = {
       required(option("CURVES", texts(options->curves),
-                      "curves, CSV: each model is fitted to each of them, and to all the others together"))};
+                      "curves as CSV, bakes, or folders of maps' results: each model is fitted to each of "
+                      "them, and to all the others together"))};
   setup.run = [options](const Invocation& invocation) { return run_compare(*options, invocation); };
   return setup;
 }

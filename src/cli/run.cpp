@@ -12,6 +12,7 @@
 #include "cli/options/bake_options.h"
 #include "cli/print/bake.h"
 #include "cli/print/checks.h"
+#include "cli/print/fits.h"
 #include "cli/print/warnings.h"
 #include "cli/result_folder.h"
 #include "core/context.h"
@@ -34,27 +35,15 @@ struct RunOptions : BakeOptions {
   int bins = 100;
 };
 
-FitFile fit_all(const Curves& curves, const Provenance& provenance) {
-  FitFile file;
-  file.provenance = provenance;
-  for (const char* model : {"published", "bounded"})
-    for (NamedFit& named : fit_model(model, curves, Abscissa::kCenter, Weights::kNone))
-      file.fits.push_back(std::move(named));
-  return file;
+// name: of the map.
+FitFile fit_all(const std::string& name, const Curves& curves, const Provenance& provenance) {
+  const std::vector<MapCurves> maps = {{name, curves}};
+  MapFits fits = fit_maps(default_fit_models(curves.index), maps, Abscissa::kCenter, Weights::kNone);
+  return {std::move(fits.fits), provenance, std::move(fits.comparison)};
 }
 
 std::string describe_fits(const FitFile& file) {
-  std::string text;
-  for (const NamedFit& named : file.fits) {
-    text += fmt::format("{:9}", named.name);
-    for (const FitParameter& parameter : named.fit.parameters) {
-      text += fmt::format(" {} = {:.5g}", parameter.name, parameter.value);
-      if (parameter.standard_error) text += fmt::format(" ± {:.2g}", *parameter.standard_error);
-      text += ',';
-    }
-    text += fmt::format(" rms {:.5f}\n", named.fit.rms);
-  }
-  return text;
+  return text_from_fits(file.fits) + text_from_comparison(file.comparison, file.fits);
 }
 
 // A map may have too few AO values for a fit (flat ground has one): that is said, and leaves the rest whole.
@@ -64,7 +53,7 @@ std::optional<FitFile> write_fits_of(const Curves& curves, const RunOptions& opt
   const fs::path path = options.folder / "fit.json";
   FitFile fits;
   try {
-    fits = fit_all(curves, provenance);
+    fits = fit_all(options.map.map.stem().string(), curves, provenance);
   } catch (const std::runtime_error& error) {
     throw_if_cancelled();
     fmt::print(stderr, "hemibake: {}: no fit: {}\n", options.map.map.string(), error.what());

@@ -35,6 +35,7 @@ struct Field {
   std::string help;         // with unit and default where these are not in `value`
   std::string placeholder;  // of the value in the help; empty: its type
   bool required = false;
+  bool may_be_missing = false;  // in a record of an older version: the variable then keeps its value
   Value value;
   std::function<bool()> recorded = [] {
     return true;

@@ -115,6 +115,7 @@ Estimate estimate_horizon(const Surface& surface, const HorizonOptions& options)
   Estimate estimate;
   estimate.kind = options.kind;
   estimate.ao = Grid<float>(surface.width(), surface.height());
+  estimate.other_ao = estimate.ao;
   estimate.bent_normals = Grid<glm::vec3>(surface.width(), surface.height());
   estimate.work =
       surface.texel_count() * static_cast<uint64_t>(options.azimuths) * static_cast<uint64_t>(options.steps);
@@ -124,8 +125,10 @@ Estimate estimate_horizon(const Surface& surface, const HorizonOptions& options)
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < surface.width(); ++x) {
         const SkySum sky = search.sky_of(x, y);
-        const double ao = options.kind == AoKind::kCosine ? sky.cosine : sky.uniform;
-        estimate.ao(x, y) = static_cast<float>(std::clamp(ao, 0.0, 1.0));
+        const bool cosine = options.kind == AoKind::kCosine;
+        const auto ao = [](double value) { return static_cast<float>(std::clamp(value, 0.0, 1.0)); };
+        estimate.ao(x, y) = ao(cosine ? sky.cosine : sky.uniform);
+        estimate.other_ao(x, y) = ao(cosine ? sky.uniform : sky.cosine);
         const double length = glm::length(sky.direction);
         estimate.bent_normals(x, y) = length > 0 ? glm::vec3(sky.direction / length) : surface.normals(x, y);
       }

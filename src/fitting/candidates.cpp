@@ -3,24 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/constants.h"
 #include "fitting/bounded.h"
 #include "fitting/least_squares.h"
 #include "fitting/mayaux2018.h"
+#include "fitting/models.h"
 #include "model/closed_forms.h"
 #include "model/model.h"
 
 namespace hemibake {
 namespace {
 
-constexpr int kAlbedoSteps = 10;
-
 std::vector<CurvePoint> points_of(const Curves& curves, int bounce) {
   return curve_points(curves, bounce, Abscissa::kCenter, Weights::kNone);
 }
 
-std::vector<CurvePoint> totals_of(const Curves& curves) {
-  return total_points(curves, fit_albedos(), Abscissa::kCenter, Weights::kNone);
+std::vector<CurvePoint> totals_of(const Curves& curves, Abscissa abscissa = Abscissa::kCenter) {
+  return total_points(curves, fit_albedos(), abscissa, Weights::kNone);
 }
 
 // Holds F₀ (factor) and 1 − F₀ (blocked) of one α.
@@ -109,7 +107,7 @@ Prediction with_square(const Curves& curves, DirectModel direct) {
 Prediction with_quotient(const Curves& curves, DirectModel direct) {
   return fit_escape<2>(curves, direct, {{"q", 0.001, 1}, {"d", 0, 0.999}}, {{0.5, 0.5}},
                        [](const auto* p, const Direct& at) {
-                         return bounded_escape_share(at.factor, at.blocked, p[0], p[1]);
+                         return bounded_escape_share(at.factor, p[0] * (1.0 - p[1]), p[0]);
                        });
 }
 
@@ -132,13 +130,24 @@ Prediction jimenez_of(const JimenezModel& model, bool over_ao) {
 }
 
 Prediction jimenez_refit(const Curves& curves, bool over_ao) {
-  const std::vector<double> albedos = fit_albedos();
-  const Fit fit =
-      fit_jimenez(over_ao ? totals_of(curves) : visibility_points(curves, albedos, Weights::kNone),
-                  static_cast<int>(albedos.size()));
+  const Fit fit = fit_jimenez(totals_of(curves, over_ao ? Abscissa::kCenter : Abscissa::kVisibility),
+                              static_cast<int>(fit_albedos().size()));
   JimenezModel model;
   for (size_t i = 0; i < 6; ++i) model.parameters[i] = fit.parameters[i].value;
   return jimenez_of(model, over_ao);
+}
+
+Prediction escape_from_visibility(const VisibilityModel& model) {
+  return [model](double, double visibility, double albedo) { return model.total(visibility, albedo); };
+}
+
+Prediction escape_from_ao(const VisibilityAoModel& model) {
+  return [model](double ao, double visibility, double albedo) { return model.total(visibility, ao, albedo); };
+}
+
+// Fits the model of fit_models called `name`.
+Prediction refit(const char* name, const Curves& curves) {
+  return fit_model_called(name).predict(fit_model(name, curves, Abscissa::kCenter, Weights::kNone));
 }
 
 double populated_bins(const Curves& curves) {
@@ -155,48 +164,40 @@ Curves all_but(std::vector<Curves> sets, size_t left_out) {
 
 const std::vector<Candidate>& candidates() {
   static const std::vector<Candidate> all = {
-      {"published", "k, e; A, B", 4, [](const Curves& curves) { return total_of(fit_formulas(curves)); }},
-      {"published, cut", "the same, F0 <= 1 and 0 <= tau <= 1", 4,
+      {"published", "k, e; A, B", 4, true,
+       [](const Curves& curves) { return total_of(fit_formulas(curves)); }},
+      {"published, cut", "the same, F0 <= 1 and 0 <= tau <= 1", 4, true,
        [](const Curves& curves) { return total_of(GuardedModel{fit_formulas(curves)}); }},
-      {"line, power", "s = k; 1-tau = F0^n", 2,
+      {"line, power", "s = k; 1-tau = F0^n", 2, true,
        [](const Curves& curves) { return with_power(curves, fit_line(curves)); }},
-      {"bounded, power", "s = k0..k1; 1-tau = F0^n", 3,
+      {"bounded, power", "s = k0..k1; 1-tau = F0^n", 3, true,
        [](const Curves& curves) { return with_power(curves, fit_both(curves)); }},
-      {"bounded, q power", "s = k0..k1; 1-tau = q F0^n", 4,
+      {"bounded, q power", "s = k0..k1; 1-tau = q F0^n", 4, true,
        [](const Curves& curves) { return with_scaled_power(curves, fit_both(curves)); }},
-      {"bounded, straight", "s = k0..k1; 1-tau = q(1 - d(1-a))", 4,
+      {"bounded, straight", "s = k0..k1; 1-tau = q(1 - d(1-a))", 4, true,
        [](const Curves& curves) { return with_straight(curves, fit_both(curves)); }},
-      {"bounded, square", "s = k0..k1; 1-tau = q(1 - d(1-F0)^2)", 4,
+      {"bounded, square", "s = k0..k1; 1-tau = q(1 - d(1-F0)^2)", 4, true,
        [](const Curves& curves) { return with_square(curves, fit_both(curves)); }},
-      {"overhead", "s = k0..1; 1-tau = q(1 - d(1-F0)/(1+3F0))", 3,
+      {"overhead", "s = k0..1; 1-tau = q(1 - d(1-F0)/(1+3F0))", 3, true,
        [](const Curves& curves) { return with_quotient(curves, fit_overhead(curves)); }},
-      {"bounded", "s = k0..k1; 1-tau = q(1 - d(1-F0)/(1+3F0))", 4,
+      {"bounded", "s = k0..k1; 1-tau = q(1 - d(1-F0)/(1+3F0))", 4, true,
        [](const Curves& curves) { return with_quotient(curves, fit_both(curves)); }},
-      {"Jimenez 2016", "their constants, V = E0/pi", 0, [](const Curves&) { return jimenez_of({}, false); }},
-      {"Jimenez 2016, ao", "their constants, V = a", 0, [](const Curves&) { return jimenez_of({}, true); }},
-      {"Jimenez, refit", "V = E0/pi", 6, [](const Curves& curves) { return jimenez_refit(curves, false); }},
-      {"Jimenez, refit, ao", "V = a", 6, [](const Curves& curves) { return jimenez_refit(curves, true); }},
+      {"Jimenez 2016", "their constants, V = E0/pi", 0, false,
+       [](const Curves&) { return jimenez_of({}, false); }},
+      {"Jimenez 2016, ao", "their constants, V = a", 0, true,
+       [](const Curves&) { return jimenez_of({}, true); }},
+      {"Jimenez, refit", "V = E0/pi", 6, false,
+       [](const Curves& curves) { return jimenez_refit(curves, false); }},
+      {"Jimenez, refit, ao", "V = a", 6, true,
+       [](const Curves& curves) { return jimenez_refit(curves, true); }},
+      {"g = V", "1-tau = V", 0, false, [](const Curves&) { return escape_from_visibility({}); }},
+      {"visibility", "1-tau = dark..open over V", 2, false,
+       [](const Curves& curves) { return refit("visibility", curves); }},
+      {"g = a", "1-tau = a, of V", 0, true, [](const Curves&) { return escape_from_ao({}); }},
+      {"visibility-ao", "1-tau = dark..open over a, of V", 2, true,
+       [](const Curves& curves) { return refit("visibility-ao", curves); }},
   };
   return all;
-}
-
-Score score_prediction(const Prediction& prediction, const Curves& curves) {
-  Score score;
-  double sum = 0;
-  int count = 0;
-  for (const CurveBin& bin : curves.bins) {
-    if (bin.count == 0) continue;
-    for (int r = 0; r <= kAlbedoSteps; ++r) {
-      const double albedo = static_cast<double>(r) / kAlbedoSteps;
-      const double predicted = prediction(bin_center(bin), bin.bounces[0].mean / kPi, albedo);
-      const double error = predicted - total_over_pi(bin, albedo);
-      sum += error * error;
-      score.max_error = std::max(score.max_error, std::abs(error));
-      ++count;
-    }
-  }
-  score.rms = count == 0 ? 0 : std::sqrt(sum / count);
-  return score;
 }
 
 Comparison compare_candidate(const Candidate& candidate, const std::vector<Curves>& sets) {

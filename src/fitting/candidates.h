@@ -1,35 +1,25 @@
 // Compares models: each is fitted to one set of curves and measured on any.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "curves/curves.h"
+#include "fitting/prediction.h"
 
 namespace hemibake {
-
-// Predicts E/π from α (ao), E₀/π (visibility; only Jimenez' cubic uses it) and ρ (albedo), each 0..1.
-using Prediction = std::function<double(double ao, double visibility, double albedo)>;
 
 struct Candidate {
   const char* name;
   const char* formula;
   int parameters;  // fitted ones
+  bool needs_ao;   // its curves must be over α
   Prediction (*fit)(const Curves& curves);
 };
 
 // Returns the candidates in the order of the table in fits/README.md.
 const std::vector<Candidate>& candidates();
-
-// Holds errors of E/π over the populated bins × the albedos 0, 0.1, … 1.
-struct Score {
-  double rms = 0;
-  double max_error = 0;
-};
-
-Score score_prediction(const Prediction& prediction, const Curves& curves);
 
 struct Comparison {
   std::vector<Score> own;     // of each set of curves, fitted to it

@@ -20,7 +20,8 @@ namespace {
 constexpr double kSmallestStandardError = 1e-4;
 
 constexpr std::array kAbscissas = {std::pair{Abscissa::kCenter, "center"},
-                                   std::pair{Abscissa::kMayaux2018, "published"}};
+                                   std::pair{Abscissa::kMayaux2018, "published"},
+                                   std::pair{Abscissa::kVisibility, "visibility"}};
 constexpr std::array kWeights = {std::pair{Weights::kNone, "none"}, std::pair{Weights::kCount, "count"},
                                  std::pair{Weights::kStandardError, "stderr"}};
 
@@ -55,6 +56,19 @@ double raw_weight(double count, double stddev_over_pi, Weights weights) {
   throw std::logic_error("weights of an unknown kind");
 }
 
+// last: index of the last bin.
+double position_of(const CurveBin& bin, size_t index, double last, Abscissa abscissa) {
+  switch (abscissa) {
+    case Abscissa::kCenter:
+      return bin_center(bin);
+    case Abscissa::kMayaux2018:
+      return static_cast<double>(index + 1) / last;
+    case Abscissa::kVisibility:
+      return bin_visibility(bin);
+  }
+  throw std::logic_error("an abscissa of an unknown kind");
+}
+
 struct BinPosition {
   const CurveBin* bin;
   double ao;
@@ -65,6 +79,8 @@ std::vector<BinPosition> usable_bins(const Curves& curves, Abscissa abscissa, We
     throw InputError(fmt::format(
         "curves without counts, expected columns count and E00_stddev for weights {}", to_string(weights)));
   }
+  if (abscissa != Abscissa::kVisibility && curves.index != CurveIndex::kAo)
+    throw InputError("curves over visibility, expected curves over ao");
   if (abscissa == Abscissa::kMayaux2018 && curves.bins.size() < 2) {
     throw InputError("1 bin, expected at least 2 for the published abscissa");
   }
@@ -73,8 +89,7 @@ std::vector<BinPosition> usable_bins(const Curves& curves, Abscissa abscissa, We
   for (size_t j = 0; j < curves.bins.size(); ++j) {
     const CurveBin& bin = curves.bins[j];
     if (bin.count < (weights == Weights::kStandardError ? 2 : 1)) continue;
-    usable.push_back(
-        {&bin, abscissa == Abscissa::kCenter ? bin_center(bin) : static_cast<double>(j + 1) / last});
+    usable.push_back({&bin, position_of(bin, j, last, abscissa)});
   }
   return usable;
 }
@@ -82,7 +97,8 @@ std::vector<BinPosition> usable_bins(const Curves& curves, Abscissa abscissa, We
 CurvePoint total_point(const CurveBin& bin, double abscissa, double albedo, Weights weights) {
   const double stddev = sum_bounces(
       bin.bounces.size(), [&](size_t b) { return bin.bounces[b].stddev; }, albedo);
-  return {abscissa, total_over_pi(bin, albedo), raw_weight(bin.count, stddev / kPi, weights), albedo};
+  return {abscissa, total_over_pi(bin, albedo), raw_weight(bin.count, stddev / kPi, weights), albedo,
+          bin_visibility(bin)};
 }
 
 void scale_to_mean_one(std::vector<CurvePoint>& points) {
@@ -97,7 +113,8 @@ std::vector<CurvePoint> curve_points(const Curves& curves, int bounce, Abscissa 
   std::vector<CurvePoint> points;
   for (const auto& [bin, ao] : usable_bins(curves, abscissa, weights)) {
     const BounceStatistics& statistics = bin->bounces.at(static_cast<size_t>(bounce));
-    points.push_back({ao, statistics.mean / kPi, raw_weight(bin->count, statistics.stddev / kPi, weights)});
+    points.push_back({ao, statistics.mean / kPi, raw_weight(bin->count, statistics.stddev / kPi, weights), 1,
+                      bin_visibility(*bin)});
   }
   scale_to_mean_one(points);
   return points;
@@ -108,17 +125,6 @@ std::vector<CurvePoint> total_points(const Curves& curves, std::span<const doubl
   std::vector<CurvePoint> points;
   for (const auto& [bin, ao] : usable_bins(curves, abscissa, weights)) {
     for (const double albedo : albedos) points.push_back(total_point(*bin, ao, albedo, weights));
-  }
-  scale_to_mean_one(points);
-  return points;
-}
-
-std::vector<CurvePoint> visibility_points(const Curves& curves, std::span<const double> albedos,
-                                          Weights weights) {
-  std::vector<CurvePoint> points;
-  for (const auto& [bin, ao] : usable_bins(curves, Abscissa::kCenter, weights)) {
-    const double visibility = bin->bounces[0].mean / kPi;
-    for (const double albedo : albedos) points.push_back(total_point(*bin, visibility, albedo, weights));
   }
   scale_to_mean_one(points);
   return points;

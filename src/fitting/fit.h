@@ -14,6 +14,7 @@ namespace hemibake {
 enum class Abscissa {
   kCenter,      // middle of the bin
   kMayaux2018,  // (j + 1)/(bins − 1) for bin j from 0: that of the constants of 2018, one bin too far
+  kVisibility,  // V, the mean E₀/π of its texels, whatever the curves are over
 };
 
 // Selects the weight of a bin.
@@ -24,10 +25,11 @@ enum class Weights {
 };
 
 struct CurvePoint {
-  double ao = 0;      // abscissa α
-  double value = 0;   // E_b/π at albedo 1
-  double weight = 1;  // relative, above 0; the weights of a fit have mean 1
-  double albedo = 1;  // ρ, where the value depends on it
+  double ao = 0;          // abscissa α
+  double value = 0;       // E_b/π at albedo 1
+  double weight = 1;      // relative, above 0; the weights of a fit have mean 1
+  double albedo = 1;      // ρ, where the value depends on it
+  double visibility = 0;  // V = E₀/π of the bin, where the value depends on it
 };
 
 // Returns the points of one bounce in bin order, without empty bins.
@@ -42,16 +44,17 @@ std::vector<CurvePoint> curve_points(const Curves& curves, int bounce, Abscissa 
 std::vector<CurvePoint> total_points(const Curves& curves, std::span<const double> albedos, Abscissa abscissa,
                                      Weights weights);
 
-// Returns the points (E₀/π, ρ, total_over_pi): total_points over the cosine-weighted visible fraction.
-std::vector<CurvePoint> visibility_points(const Curves& curves, std::span<const double> albedos,
-                                          Weights weights);
-
 struct FitParameter {
   std::string name;
   double value = 0;
-  // Square root of the covariance's diagonal; none for a parameter on its bound.
+  // Square root of the covariance's diagonal; none for a parameter on its bound. Where others are on theirs,
+  // it holds for them staying there.
   std::optional<double> standard_error;
+  bool on_bound = false;  // the residuals fall only beyond the end of its range
 };
+
+// Sets of parameters that a fit begins from.
+using Starts = std::vector<std::vector<double>>;
 
 struct Fit {
   std::string model;
@@ -77,7 +80,7 @@ struct NamedFit {
 // Returns the value of the parameter called `name`. Throws std::logic_error where there is none.
 double parameter_value(const Fit& fit, const std::string& name);
 
-std::string to_string(Abscissa abscissa);  // center, published
+std::string to_string(Abscissa abscissa);  // center, published, visibility
 std::string to_string(Weights weights);    // none, count, stderr
 
 // Parse the texts above. Throw InputError for any other.

@@ -4,17 +4,14 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "core/error.h"
+#include "fitting/evaluation.h"
 
 namespace hemibake {
 namespace {
 
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-constexpr int kMaxSteps = 1000;
 // Starts of least cost that are followed: the best one is not always in the right valley.
 constexpr size_t kStartsTried = 3;
 
@@ -25,19 +22,6 @@ constexpr double kSmallestConditioning = 1e-7;
 // Least effect (rms, E/π) on the curve of changing a determined parameter by its own size or by 1: the
 // rounding of the values.
 constexpr double kSmallestEffect = 1e-12;
-
-struct Evaluation {
-  Eigen::VectorXd residuals;
-  Matrix jacobian;
-};
-
-Evaluation evaluate(const ceres::CostFunction& cost, const std::vector<double>& parameters) {
-  Evaluation result{Eigen::VectorXd(cost.num_residuals()), Matrix(cost.num_residuals(), parameters.size())};
-  const double* blocks[] = {parameters.data()};
-  double* jacobians[] = {result.jacobian.data()};
-  cost.Evaluate(blocks, result.residuals.data(), jacobians);
-  return result;
-}
 
 // Returns the starts of least cost, best first.
 std::vector<std::vector<double>> best_starts(const Formula& formula, const ceres::CostFunction& cost) {
@@ -55,52 +39,17 @@ std::vector<std::vector<double>> best_starts(const Formula& formula, const ceres
   return best;
 }
 
-struct Minimum {
-  std::vector<double> parameters;
-  double cost = std::numeric_limits<double>::infinity();
-  std::string failure;  // empty: converged
-};
-
-Minimum solve(const Formula& formula, ceres::CostFunction* cost, std::vector<double> parameters) {
-  ceres::Problem::Options ownership;
-  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(ownership);
-  problem.AddResidualBlock(cost, nullptr, parameters.data());
-  for (size_t p = 0; p < parameters.size(); ++p) {
-    const ParameterRange& range = formula.parameters[p];
-    const int index = static_cast<int>(p);
-    if (std::isfinite(range.lower)) problem.SetParameterLowerBound(parameters.data(), index, range.lower);
-    if (std::isfinite(range.upper)) problem.SetParameterUpperBound(parameters.data(), index, range.upper);
-  }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.logging_type = ceres::SILENT;
-  options.max_num_iterations = kMaxSteps;
-  options.function_tolerance = 1e-15;  // as far as doubles go: the constants are compared to 10⁻⁶ and better
-  options.gradient_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-11;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  return {parameters, summary.final_cost,
-          summary.termination_type == ceres::CONVERGENCE ? "" : summary.message};
-}
-
 // Returns the lowest minimum that the best starts lead to. An unconverged one takes part: lower than all
 // others, it proves that they are not the minimum.
-std::vector<double> lowest_minimum(const Formula& formula, ceres::CostFunction* cost) {
+Minimum lowest_minimum(const Formula& formula, ceres::CostFunction& cost) {
   Minimum lowest;
-  for (const std::vector<double>& start : best_starts(formula, *cost)) {
-    const Minimum found = solve(formula, cost, start);
-    if (found.cost < lowest.cost || lowest.parameters.empty()) lowest = found;
+  for (const std::vector<double>& start : best_starts(formula, cost)) {
+    Minimum found = minimize_within(formula.parameters, cost, start);
+    if (found.cost < lowest.cost || lowest.parameters.empty()) lowest = std::move(found);
   }
-  if (!lowest.failure.empty()) {
+  if (!lowest.failure.empty())
     throw CheckError(fmt::format("fit of {} did not converge: {}", formula.model, lowest.failure));
-  }
-  return lowest.parameters;
-}
-
-bool on_bound(const ParameterRange& range, double value) {
-  return value <= range.lower || value >= range.upper;
+  return lowest;
 }
 
 // Returns s²(JᵀJ)⁻¹ over the free parameters; rows and columns of those on a bound are 0.
@@ -162,19 +111,19 @@ Fit minimize(const Formula& formula, std::span<const CurvePoint> points,
     throw InputError(fmt::format("{} usable bins, expected at least {} for the {} parameters of {}",
                                  observations, count + 1, count, formula.model));
   }
-  const std::vector<double> found = lowest_minimum(formula, cost.get());
-  const Evaluation at = evaluate(*cost, found);
+  const Minimum minimum = lowest_minimum(formula, *cost);
+  const Evaluation at = evaluate(*cost, minimum.parameters);
   std::vector<Eigen::Index> free;
-  for (size_t p = 0; p < count; ++p) {
-    if (!on_bound(formula.parameters[p], found[p])) free.push_back(static_cast<Eigen::Index>(p));
-  }
-  const Matrix spread = covariance(formula, at, found, free, static_cast<double>(observations));
+  for (size_t p = 0; p < count; ++p)
+    if (!minimum.held[p]) free.push_back(static_cast<Eigen::Index>(p));
+  const Matrix spread = covariance(formula, at, minimum.parameters, free, static_cast<double>(observations));
 
   Fit fit;
   fit.model = formula.model;
   fit.formula = formula.text;
   for (size_t p = 0; p < count; ++p)
-    fit.parameters.push_back({formula.parameters[p].name, found[p], std::nullopt});
+    fit.parameters.push_back(
+        {formula.parameters[p].name, minimum.parameters[p], std::nullopt, minimum.held[p]});
   for (const Eigen::Index p : free)
     fit.parameters[static_cast<size_t>(p)].standard_error = std::sqrt(spread(p, p));
   fit.covariance.assign(spread.data(), spread.data() + spread.size());

@@ -11,23 +11,18 @@
 #include <string>
 #include <vector>
 
+#include "fitting/bounded_minimum.h"
 #include "fitting/fit.h"
 
 namespace hemibake {
-
-struct ParameterRange {
-  std::string name;
-  double lower = -HUGE_VAL;
-  double upper = HUGE_VAL;
-};
 
 // Describes a formula to the minimiser; a cost function beside it gives its values.
 struct Formula {
   std::string model;  // as in FIT.json
   std::string text;   // the formula for a human
   std::vector<ParameterRange> parameters;
-  std::vector<std::vector<double>> starts;  // parameter sets to begin from; those of least cost are taken
-  int points_per_observation = 1;           // points that share one error: a bin at several albedos
+  Starts starts;                   // those of least cost are followed
+  int points_per_observation = 1;  // points that share one error: a bin at several albedos
 };
 
 // Gives Ceres the residuals √w·(formula − value) of `points`.

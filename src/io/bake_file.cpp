@@ -31,10 +31,12 @@ template <class Value, class BakeType>
 std::vector<BasicPlane<Value>> planes_of(BakeType& bake) {
   std::vector<BasicPlane<Value>> planes;
   if (!bake.visible_fraction.empty()) planes.push_back({"ao", bake.visible_fraction.values.data()});
+  if (!bake.visibility.empty()) planes.push_back({"visibility", bake.visibility.values.data()});
   for (size_t b = 0; b < bake.irradiance.size(); ++b)
     planes.push_back({irradiance_channel(b), bake.irradiance[b].values.data()});
   if (!bake.total.empty()) planes.push_back({"total", bake.total.values.data()});
   if (!bake.residual.empty()) planes.push_back({"residual", bake.residual.values.data()});
+  if (!bake.bounce.empty()) planes.push_back({"bounce", bake.bounce.values.data()});
   append_vector_planes(planes, "normal", bake.normals);
   append_vector_planes(planes, "bent", bake.bent_normals);
   return planes;
@@ -49,6 +51,8 @@ void check_size(const Bake& bake, const Grid<T>& grid, const char* name) {
 
 void check_sizes(const Bake& bake) {
   check_size(bake, bake.visible_fraction, "ao");
+  check_size(bake, bake.visibility, "visibility");
+  check_size(bake, bake.bounce, "bounce");
   for (const Grid<float>& plane : bake.irradiance) {
     if (plane.empty()) throw std::logic_error("an irradiance plane of a bake is empty");
     check_size(bake, plane, "irradiance");
@@ -76,6 +80,8 @@ Bake make_room(const fs::path& path, const ImageHeader& header) {
     plane = std::remove_reference_t<decltype(plane)>(header.width, header.height);
   };
   if (has("ao")) make_plane(bake.visible_fraction);
+  if (has("visibility")) make_plane(bake.visibility);
+  if (has("bounce")) make_plane(bake.bounce);
   bake.irradiance.resize(count("irradiance."));
   for (Grid<float>& plane : bake.irradiance) make_plane(plane);
   if (has("total")) make_plane(bake.total);
@@ -86,6 +92,18 @@ Bake make_room(const fs::path& path, const ImageHeader& header) {
     throw InputError(fmt::format(
         "{}: holds none of the channels of a bake, expected a file of `hemibake bake`", path.string()));
   return bake;
+}
+
+double read_bounce_albedo(const fs::path& path, const Provenance& provenance) {
+  const auto found = provenance.find("bounce_albedo");
+  if (found != provenance.end() && found->is_number()) {
+    const double albedo = found->get<double>();
+    if (albedo > 0 && albedo < 1) return albedo;
+  }
+  throw InputError(
+      fmt::format("{}: attribute hemibake:bounce_albedo is missing or outside 0..1, expected the albedo of "
+                  "channel bounce",
+                  path.string()));
 }
 
 }  // namespace
@@ -104,6 +122,7 @@ BakeFile read_bake(const fs::path& path) {
     throw InputError(
         fmt::format("{}: has no hemibake attributes, expected a file of `hemibake bake`", path.string()));
   BakeFile file{make_room(path, header), header.provenance};
+  if (!file.bake.bounce.empty()) file.bake.bounce_albedo = read_bounce_albedo(path, header.provenance);
   read_planes(path, header.width, header.height, planes_of<float>(file.bake));
   return file;
 }

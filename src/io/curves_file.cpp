@@ -51,25 +51,25 @@ void check_bin_number(const CellReader& cells, size_t row) {
   }
 }
 
-CurveBin read_bin(const CellReader& cells, size_t row, int bounces, double low) {
+// low: where the bin before ends.
+CurveBin read_bin(const CellReader& cells, size_t row, const Curves& curves, double low) {
   check_bin_number(cells, row);
+  const std::string index = to_string(curves.index);
   CurveBin bin;
-  bin.ao_low = cells.number(row, "ao_low", 0, 1);
-  bin.ao_high = cells.number(row, "ao_high", 0, 1);
-  if (std::abs(bin.ao_low - low) > kEqualEdges) {
-    cells.fail(row, fmt::format("ao_low is {}, expected {} where the bin before ends", bin.ao_low, low));
-  }
-  if (bin.ao_high <= bin.ao_low) {
-    cells.fail(row, fmt::format("ao_high is {}, expected more than ao_low {}", bin.ao_high, bin.ao_low));
-  }
+  bin.low = cells.number(row, index + "_low", 0, 1);
+  bin.high = cells.number(row, index + "_high", 0, 1);
+  if (std::abs(bin.low - low) > kEqualEdges)
+    cells.fail(row, fmt::format("{}_low is {}, expected {} where the bin before ends", index, bin.low, low));
+  if (bin.high <= bin.low)
+    cells.fail(row, fmt::format("{0}_high is {1}, expected more than {0}_low {2}", index, bin.high, bin.low));
   bin.count = cells.number(row, "count", 0);
   if (bin.count != std::floor(bin.count)) {
     cells.fail(row, fmt::format("count is {}, expected a whole number", bin.count));
   }
-  bin.bounces.resize(static_cast<size_t>(bounces));
+  bin.bounces.resize(static_cast<size_t>(curves.bounce_count));
   if (bin.count == 0) return bin;
-  bin.ao_mean = cells.number(row, "ao_mean", 0, 1);
-  for (int b = 0; b < bounces; ++b) {
+  bin.mean = cells.number(row, index + "_mean", 0, 1);
+  for (int b = 0; b < curves.bounce_count; ++b) {
     bin.bounces[static_cast<size_t>(b)] = {cells.number(row, mean_column(b), 0),
                                            cells.number(row, stddev_column(b), 0)};
   }
@@ -79,9 +79,9 @@ CurveBin read_bin(const CellReader& cells, size_t row, int bounces, double low) 
 CurveBin read_published_bin(const CellReader& cells, size_t row, size_t rows, int bounces) {
   check_bin_number(cells, row);
   CurveBin bin;
-  bin.ao_low = static_cast<double>(row) / static_cast<double>(rows);
-  bin.ao_high = static_cast<double>(row + 1) / static_cast<double>(rows);
-  bin.ao_mean = bin_center(bin);
+  bin.low = static_cast<double>(row) / static_cast<double>(rows);
+  bin.high = static_cast<double>(row + 1) / static_cast<double>(rows);
+  bin.mean = bin_center(bin);
   bin.count = 1;
   for (int b = 0; b < bounces; ++b) bin.bounces.push_back({cells.number(row, published_column(b), 0), 0});
   return bin;
@@ -97,17 +97,18 @@ int count_bounces(const CellReader& cells, std::string (*column)(int)) {
 
 Table table_from_curves(const Curves& curves) {
   Table table;
-  table.columns = {"bin", "ao_low", "ao_high", "ao_mean", "count"};
+  const std::string index = to_string(curves.index);
+  table.columns = {"bin", index + "_low", index + "_high", index + "_mean", "count"};
   for (int b = 0; b < curves.bounce_count; ++b) {
     table.columns.push_back(mean_column(b));
     table.columns.push_back(stddev_column(b));
   }
   for (const CurveBin& bin : curves.bins) {
     auto& row = table.rows.emplace_back();
-    row = {static_cast<double>(table.rows.size() - 1), bin.ao_low, bin.ao_high, std::nullopt, bin.count};
+    row = {static_cast<double>(table.rows.size() - 1), bin.low, bin.high, std::nullopt, bin.count};
     row.resize(table.columns.size());
     if (bin.count == 0) continue;
-    row[3] = bin.ao_mean;
+    row[3] = bin.mean;
     for (size_t b = 0; b < bin.bounces.size(); ++b) {
       row[5 + 2 * b] = bin.bounces[b].mean;
       row[6 + 2 * b] = bin.bounces[b].stddev;
@@ -120,6 +121,7 @@ Curves curves_from_table(const Table& table, const std::filesystem::path& path) 
   const CellReader cells(table, path.string());
   Curves curves;
   curves.has_counts = cells.has_column("count");
+  if (cells.has_column("visibility_low")) curves.index = CurveIndex::kVisibility;
   curves.bounce_count = count_bounces(cells, curves.has_counts ? mean_column : published_column);
   if (curves.bounce_count == 0) {
     throw InputError(fmt::format("{}: no column {}, expected curves as 'hemibake curves' writes them",
@@ -128,9 +130,9 @@ Curves curves_from_table(const Table& table, const std::filesystem::path& path) 
   if (table.rows.empty())
     throw InputError(fmt::format("{}: no bins, expected a line for each", path.string()));
   for (size_t row = 0; row < table.rows.size(); ++row) {
-    const double low = row == 0 ? 0 : curves.bins.back().ao_high;
+    const double low = row == 0 ? 0 : curves.bins.back().high;
     curves.bins.push_back(curves.has_counts
-                              ? read_bin(cells, row, curves.bounce_count, low)
+                              ? read_bin(cells, row, curves, low)
                               : read_published_bin(cells, row, table.rows.size(), curves.bounce_count));
   }
   return curves;

@@ -18,8 +18,9 @@ Json json_or_null(const std::optional<double>& value) { return value ? Json(*val
 Json json_from_fit(const Fit& fit) {
   Json parameters = Json::object();
   for (const FitParameter& parameter : fit.parameters) {
-    parameters[parameter.name] = {{"value", parameter.value},
-                                  {"stderr", json_or_null(parameter.standard_error)}};
+    Json& json = parameters[parameter.name];
+    json = {{"value", parameter.value}, {"stderr", json_or_null(parameter.standard_error)}};
+    if (parameter.on_bound) json["on_bound"] = true;
   }
   const size_t count = fit.parameters.size();
   Json covariance = Json::array();
@@ -39,6 +40,40 @@ Json json_from_fit(const Fit& fit) {
           {"weights", to_string(fit.weights)}};
 }
 
+Json json_or_null(const std::optional<Score>& score) {
+  return score ? Json{{"rms", score->rms}, {"max_error", score->max_error}} : Json(nullptr);
+}
+
+// Returns the constants of all fits by name, null without fits.
+Json json_from_constants(const std::vector<NamedFit>& fits) {
+  Json json;
+  for (const auto& [name, fit] : fits)
+    for (const FitParameter& parameter : fit.parameters) json[name][parameter.name] = parameter.value;
+  return json;
+}
+
+Json json_from_map(const MapErrors& map, const std::vector<std::string>& models) {
+  Json json = {{"map", map.name}, {"mean_escape", json_or_null(map.mean_escape)}};
+  json["models"] = Json::object();
+  for (size_t m = 0; m < models.size(); ++m) {
+    const ModelOnMap& model = map.models[m];
+    json["models"][models[m]] = {{"parameters", json_from_constants(model.fits)},
+                                 {"own", json_or_null(model.own)},
+                                 {"shared", json_or_null(std::optional(model.shared))},
+                                 {"held_out", json_or_null(model.held_out)}};
+  }
+  return json;
+}
+
+// Adds "maps" and, of several, "held_out" to the fits.
+void add_comparison(const MapComparison& comparison, Json& json) {
+  for (const MapErrors& map : comparison.maps) json["maps"].push_back(json_from_map(map, comparison.models));
+  if (comparison.winner.empty()) return;
+  json["held_out"] = {{"winner", comparison.winner}, {"rms", Json::object()}};
+  for (size_t m = 0; m < comparison.models.size(); ++m)
+    json["held_out"]["rms"][comparison.models[m]] = json_or_null(comparison.held_out_rms[m]);
+}
+
 std::optional<double> number_or_null(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional(json.get<double>());
 }
@@ -49,8 +84,8 @@ Fit fit_from_json(const Json& json) {
   fit.model = json.at("model").get<std::string>();
   fit.formula = json.at("formula").get<std::string>();
   for (const auto& [name, parameter] : json.at("parameters").items()) {
-    fit.parameters.push_back(
-        {name, parameter.at("value").get<double>(), number_or_null(parameter.at("stderr"))});
+    fit.parameters.push_back({name, parameter.at("value").get<double>(),
+                              number_or_null(parameter.at("stderr")), parameter.value("on_bound", false)});
   }
   for (const Json& row : json.at("covariance")) {
     for (const Json& value : row) fit.covariance.push_back(value.get<double>());
@@ -69,6 +104,7 @@ Fit fit_from_json(const Json& json) {
 Json json_from_fits(const FitFile& file) {
   Json json = Json::object();
   for (const auto& [name, fit] : file.fits) json[name] = json_from_fit(fit);
+  add_comparison(file.comparison, json);
   json["provenance"] = file.provenance;
   return json;
 }
@@ -77,10 +113,8 @@ FitFile fits_from_json(const Json& json, const std::filesystem::path& path) {
   if (!json.is_object()) throw InputError(fmt::format("{}: not a JSON object, expected fits", path.string()));
   FitFile file;
   for (const auto& [name, value] : json.items()) {
-    if (name == "provenance") {
-      file.provenance = value;
-      continue;
-    }
+    if (name == "provenance") file.provenance = value;
+    if (name == "provenance" || name == "maps" || name == "held_out") continue;
     try {
       file.fits.push_back({name, fit_from_json(value)});
     } catch (const Json::exception& error) {
@@ -98,9 +132,10 @@ std::vector<std::string> model_origin(const FitFile& file, ModelKind kind) {
   std::vector<std::string> lines = describe_fits(file.fits, kind);
   lines.insert(lines.begin(),
                std::string("Ambient occlusion with all bounces of light, by hemibake ") + kVersion + ".");
-  for (const char* name : {"input", "input_sha256", "command"})
-    if (file.provenance.contains(name) && file.provenance[name].is_string())
-      lines.push_back(fmt::format("{}: {}", name, file.provenance[name].get<std::string>()));
+  // Text travels further than the result folder: no folders, command lines or hashes of the maker.
+  if (file.provenance.contains("input") && file.provenance["input"].is_string())
+    lines.push_back(fmt::format(
+        "input: {}", std::filesystem::path(file.provenance["input"].get<std::string>()).filename().string()));
   return lines;
 }
 

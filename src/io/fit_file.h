@@ -6,6 +6,7 @@
 
 #include "fitting/fit.h"
 #include "fitting/fitted_model.h"
+#include "fitting/map_comparison.h"
 #include "io/provenance.h"
 
 namespace hemibake {
@@ -13,6 +14,7 @@ namespace hemibake {
 struct FitFile {
   std::vector<NamedFit> fits;
   Provenance provenance;
+  MapComparison comparison;  // without maps where it is unknown; written, but not read back
 };
 
 nlohmann::ordered_json json_from_fits(const FitFile& file);
@@ -20,8 +22,8 @@ nlohmann::ordered_json json_from_fits(const FitFile& file);
 // Throws InputError "FILE: NAME: …, expected …". path: for errors only.
 FitFile fits_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
-// Returns lines for the head of a model's shader text: version, formulas with their constants, input,
-// command. Throws InputError where a fit of the model is missing.
+// Returns lines for the head of a model's shader text: version, formulas with their constants, name of the
+// input without its folder. Throws InputError where a fit of the model is missing.
 std::vector<std::string> model_origin(const FitFile& file, ModelKind kind);
 
 FitFile read_fits(const std::filesystem::path& path);

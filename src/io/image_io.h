@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/grid.h"
+#include "io/output_file.h"
 #include "io/provenance.h"
 
 namespace hemibake {
@@ -71,6 +72,33 @@ void write_image(const std::filesystem::path& path, int width, int height, std::
 // Writes one channel `Y`, as write_image.
 void write_height_map(const std::filesystem::path& path, const Grid<float>& heights,
                       const Provenance& provenance);
+
+// Files of textures: PNG of 16 or 8 bits, EXR or TIFF of 32-bit floats.
+enum class TextureFormat { kPng16, kPng8, kExr, kTif };
+
+struct TextureFormatInfo {
+  const char* name;       // "png16"
+  const char* extension;  // ".png"
+  int bits;               // of a channel
+  bool is_float;
+};
+
+// In the order of the enumerators.
+std::span<const TextureFormatInfo> texture_formats();
+const TextureFormatInfo& texture_format_info(TextureFormat format);
+
+struct TextureCoding {
+  TextureFormat format = TextureFormat::kPng16;
+  bool dither = false;  // 8 bits: rounds up with the probability of the remainder, which keeps the mean
+};
+
+// Writes planes of linear data, 0..1, into `file`, which stays to be committed. PNG is written to nearest, or
+// dithered with a hash of channel and texel: the same bytes at every run. No colour space is claimed: no gAMA
+// and no sRGB chunk. Metadata as write_image; a TIFF has the JSON as its ImageDescription. Throws
+// std::logic_error for a value outside 0..1 or not finite, InputError where the file cannot be written.
+// planes: 1, 3 or 4.
+void write_texture(OutputFile& file, int width, int height, std::span<const Plane> planes,
+                   const TextureCoding& coding, const Provenance& provenance);
 
 // Writes an 8-bit sRGB PNG of values already encoded for display, clamped to 0..1. Errors as write_image.
 void write_png8_rgb(const std::filesystem::path& path, const Grid<glm::vec3>& picture,

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 
 #include "core/context.h"
@@ -15,6 +16,7 @@
 #include "core/parallel.h"
 #include "io/image_io.h"
 #include "io/output_file.h"
+#include "sampling/low_discrepancy.h"
 
 namespace hemibake {
 namespace {
@@ -24,6 +26,7 @@ namespace fs = std::filesystem;
 // Values interleaved at a time: some MB, a few compression blocks for every thread.
 constexpr int64_t kValuesPerBlock = int64_t{1} << 22;
 constexpr int kMaxRowsPerBlock = 256;
+constexpr int kPngLevel = 1;  // of textures (src/textures/README.md)
 constexpr int kZipRows = 16;  // rows that EXR compresses together
 
 // Lets OpenImageIO write into an OutputFile, and keeps the errno that it would lose.
@@ -109,19 +112,20 @@ void check_finite(const fs::path& path, int width, int height, std::span<const P
       });
 }
 
-// An image being written into an OutputFile.
+// An image being written into an OutputFile, which the caller commits.
 class Writer {
  public:
-  Writer(const fs::path& path, const std::string& format, const OIIO::ImageSpec& spec)
-      : file_(path), proxy_(file_.descriptor()), spec_(spec), output_(OIIO::ImageOutput::create(format)) {
+  Writer(const OutputFile& file, const std::string& format, const OIIO::ImageSpec& spec)
+      : file_(file), proxy_(file.descriptor()), spec_(spec), output_(OIIO::ImageOutput::create(format)) {
     OIIO::attribute("threads", thread_count());
     OIIO::attribute("exr_threads", thread_count());
     if (!output_ || !output_->set_ioproxy(&proxy_))
       throw std::logic_error("OpenImageIO cannot write " + format);
-    if (!output_->open(path.string(), spec_)) fail();
+    if (!output_->open(file.path().string(), spec_)) fail();
   }
 
-  // Interleaves and writes block by block; commits the file.
+  // Interleaves and writes block by block.
+  // convert: sample from value, plane and texel.
   template <class Sample, class Convert>
   void write(std::span<const Plane> planes, Convert convert) {
     const int rows = rows_per_block();
@@ -134,12 +138,11 @@ class Writer {
       const size_t texels = static_cast<size_t>(end - begin) * width;
       for (size_t k = 0; k < planes.size(); ++k)
         for (size_t i = 0; i < texels; ++i)
-          block[i * planes.size() + k] = convert(planes[k].first[(first_texel + i) * planes[k].stride]);
+          block[i * planes.size() + k] = convert(planes[k].first[(first_texel + i) * planes[k].stride], k, first_texel + i);
       if (!output_->write_scanlines(begin, end, 0, OIIO::BaseTypeFromC<Sample>::value, block.data())) fail();
     }
     const bool closed = output_->close();
     if (!closed || proxy_.error_number() != 0) fail();
-    file_.commit();
   }
 
  private:
@@ -153,7 +156,7 @@ class Writer {
     throw InputError(fmt::format("{}: could not write: {}", file_.path().string(), output_->geterror()));
   }
 
-  OutputFile file_;
+  const OutputFile& file_;
   FileProxy proxy_;
   OIIO::ImageSpec spec_;
   std::unique_ptr<OIIO::ImageOutput> output_;
@@ -169,12 +172,20 @@ OIIO::ImageSpec make_spec(int width, int height, std::span<const Plane> planes, 
   return spec;
 }
 
-void write_exr(const fs::path& path, int width, int height, std::span<const Plane> planes,
+float as_float(float value, size_t, size_t) { return value; }
+
+// value: 0..1.
+template <class Integer>
+Integer to_nearest(float value, size_t, size_t) {
+  return static_cast<Integer>(static_cast<double>(value) * std::numeric_limits<Integer>::max() + 0.5);
+}
+
+void write_exr(const OutputFile& file, int width, int height, std::span<const Plane> planes,
                const Provenance& provenance) {
   OIIO::ImageSpec spec = make_spec(width, height, planes, OIIO::TypeDesc::FLOAT, provenance);
   spec.attribute("compression", "zip");
   spec.attribute("DateTime", "");  // else it writes the time of day, and no two runs give the same bytes
-  Writer(path, "openexr", spec).write<float>(planes, [](float value) { return value; });
+  Writer(file, "openexr", spec).write<float>(planes, as_float);
 }
 
 void write_png16(const fs::path& path, int width, int height, std::span<const Plane> planes,
@@ -189,19 +200,73 @@ void write_png16(const fs::path& path, int width, int height, std::span<const Pl
             fmt::format("{}: {}, expected 0..1 in a PNG (an .exr takes any)", path.string(), what));
       });
   const OIIO::ImageSpec spec = make_spec(width, height, planes, OIIO::TypeDesc::UINT16, provenance);
-  Writer(path, "png", spec).write<uint16_t>(planes, [](float value) {
-    return static_cast<uint16_t>(std::lround(static_cast<double>(value) * 65535.0));
-  });
+  OutputFile file(path);
+  Writer(file, "png", spec).write<uint16_t>(planes, to_nearest<uint16_t>);
+  file.commit();
+}
+
+constexpr std::array kTextureFormats = {
+    TextureFormatInfo{"png16", ".png", 16, false}, TextureFormatInfo{"png8", ".png", 8, false},
+    TextureFormatInfo{"exr", ".exr", 32, true}, TextureFormatInfo{"tif", ".tif", 32, true}};
+
+// Rounds 255 times the value up with the probability of its remainder.
+uint8_t dithered(float value, size_t plane, size_t texel) {
+  const double scaled = static_cast<double>(value) * 255;
+  return static_cast<uint8_t>(std::min(255.0, scaled + unit_interval(mix_bits(0, plane, texel))));
+}
+
+void write_png_texture(const OutputFile& file, OIIO::ImageSpec spec, std::span<const Plane> planes,
+                       const TextureCoding& coding) {
+  spec.attribute("png:compressionLevel", kPngLevel);
+  if (coding.format == TextureFormat::kPng16)
+    return Writer(file, "png", spec).write<uint16_t>(planes, to_nearest<uint16_t>);
+  spec.set_format(OIIO::TypeDesc::UINT8);
+  if (coding.dither) return Writer(file, "png", spec).write<uint8_t>(planes, dithered);
+  Writer(file, "png", spec).write<uint8_t>(planes, to_nearest<uint8_t>);
+}
+
+void write_tif_texture(const OutputFile& file, OIIO::ImageSpec spec, std::span<const Plane> planes,
+                       const Provenance& provenance) {
+  spec.set_format(OIIO::TypeDesc::FLOAT);
+  spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "");
+  spec.attribute("ImageDescription", provenance.dump());
+  Writer(file, "tiff", spec).write<float>(planes, as_float);
 }
 
 }  // namespace
+
+std::span<const TextureFormatInfo> texture_formats() { return kTextureFormats; }
+
+const TextureFormatInfo& texture_format_info(TextureFormat format) {
+  return kTextureFormats.at(static_cast<size_t>(format));
+}
+
+void write_texture(OutputFile& file, int width, int height, std::span<const Plane> planes,
+                   const TextureCoding& coding, const Provenance& provenance) {
+  if (width < 1 || height < 1 || planes.empty()) throw std::logic_error("a texture to write is empty");
+  check_values(
+      width, height, planes, [](float value) { return value >= 0 && value <= 1; },
+      [&](const std::string& what) {
+        throw std::logic_error(
+            fmt::format("internal check failed: {}: {}, expected 0..1", file.path().string(), what));
+      });
+  if (coding.format == TextureFormat::kExr) return write_exr(file, width, height, planes, provenance);
+  const OIIO::ImageSpec spec = make_spec(width, height, planes, OIIO::TypeDesc::UINT16, provenance);
+  if (coding.format == TextureFormat::kTif) return write_tif_texture(file, spec, planes, provenance);
+  write_png_texture(file, spec, planes, coding);
+}
 
 void write_image(const fs::path& path, int width, int height, std::span<const Plane> planes,
                  const Provenance& provenance) {
   if (width < 1 || height < 1 || planes.empty()) throw std::logic_error("an image to write is empty");
   check_finite(path, width, height, planes);
   const std::string extension = lower_case_extension(path);
-  if (extension == ".exr") return write_exr(path, width, height, planes, provenance);
+  if (extension == ".exr") {
+    OutputFile file(path);
+    write_exr(file, width, height, planes, provenance);
+    return file.commit();
+  }
   if (extension == ".png") return write_png16(path, width, height, planes, provenance);
   throw InputError(
       fmt::format("{}: cannot write '{}' files, expected .exr or .png", path.string(), extension));
@@ -219,9 +284,11 @@ void write_png8_rgb(const fs::path& path, const Grid<glm::vec3>& picture, const 
   check_finite(path, picture.width, picture.height, planes);
   OIIO::ImageSpec spec = make_spec(picture.width, picture.height, planes, OIIO::TypeDesc::UINT8, provenance);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  Writer(path, "png", spec).write<uint8_t>(planes, [](float value) {
+  OutputFile file(path);
+  Writer(file, "png", spec).write<uint8_t>(planes, [](float value, size_t, size_t) {
     return static_cast<uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
   });
+  file.commit();
 }
 
 }  // namespace hemibake

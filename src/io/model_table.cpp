@@ -5,30 +5,89 @@
 namespace hemibake {
 namespace {
 
-constexpr int kAoSteps = 100;
+constexpr int kSteps = 100;
+constexpr int kStepsOfPairs = 50;
 constexpr int kAlbedoSteps = 10;
 
-template <class Model>
-Table sample(const Model& model) {
+double step(int i, int steps) { return static_cast<double>(i) / steps; }
+
+// Adds the names of the columns: inputs, what `bounces` holds, totals.
+Table head(std::vector<std::string> inputs, bool bounces) {
   Table table;
-  table.columns = {"ao", "direct", "first_bounce", "bounce_ratio"};
-  for (int r = 0; r <= kAlbedoSteps; ++r) {
-    table.columns.push_back(fmt::format("total_{:.1f}", static_cast<double>(r) / kAlbedoSteps));
+  table.columns = std::move(inputs);
+  table.columns.emplace_back("direct");
+  if (bounces) table.columns.insert(table.columns.end(), {"first_bounce", "bounce_ratio"});
+  for (int r = 0; r <= kAlbedoSteps; ++r)
+    table.columns.push_back(fmt::format("total_{:.1f}", step(r, kAlbedoSteps)));
+  return table;
+}
+
+// Adds a row. first: inputs, and the bounces that the model tells apart. total: of an albedo.
+template <class Total>
+void add_row(Table& table, std::vector<double> first, Total total) {
+  auto& row = table.rows.emplace_back(first.begin(), first.end());
+  for (int r = 0; r <= kAlbedoSteps; ++r) row.emplace_back(total(step(r, kAlbedoSteps)));
+}
+
+// Adds 51 × 51 rows. row(x, y): adds one.
+template <class Row>
+void add_square(Row row) {
+  for (int i = 0; i <= kStepsOfPairs; ++i)
+    for (int j = 0; j <= kStepsOfPairs; ++j) row(step(i, kStepsOfPairs), step(j, kStepsOfPairs));
+}
+
+template <class Model>
+Table table_of(const Model& model) {  // of α
+  Table table = head({"ao"}, true);
+  for (int i = 0; i <= kSteps; ++i) {
+    const double ao = step(i, kSteps);
+    add_row(table, {ao, model.direct(ao), model.first_bounce(ao), model.bounce_ratio(ao)},
+            [&](double albedo) { return model.total(ao, albedo); });
   }
-  for (int i = 0; i <= kAoSteps; ++i) {
-    const double ao = static_cast<double>(i) / kAoSteps;
-    auto& row = table.rows.emplace_back();
-    row = {ao, model.direct(ao), model.first_bounce(ao), model.bounce_ratio(ao)};
-    for (int r = 0; r <= kAlbedoSteps; ++r)
-      row.emplace_back(model.total(ao, static_cast<double>(r) / kAlbedoSteps));
+  return table;
+}
+
+Table table_of(const VisibilityModel& model) {
+  Table table = head({"visibility"}, true);
+  for (int i = 0; i <= kSteps; ++i) {
+    const double v = step(i, kSteps), escape = model.escape(v);
+    add_row(table, {v, v, (1 - v) * escape, 1 - escape},
+            [&](double albedo) { return model.total(v, albedo); });
+  }
+  return table;
+}
+
+Table table_of(const VisibilityAoModel& model) {
+  Table table = head({"visibility", "ao"}, true);
+  add_square([&](double v, double ao) {
+    const double escape = model.escape(ao);
+    add_row(table, {v, ao, v, (1 - v) * escape, 1 - escape},
+            [&](double albedo) { return model.total(v, ao, albedo); });
+  });
+  return table;
+}
+
+Table table_of(const BounceMapModel& model) {
+  Table table = head({"visibility", "bounce"}, false);
+  add_square([&](double v, double bounce) {
+    add_row(table, {v, bounce, v}, [&](double albedo) { return model.total(v, bounce, albedo); });
+  });
+  return table;
+}
+
+Table table_of(const JimenezModel& model) {
+  Table table = head({"visibility"}, false);
+  for (int i = 0; i <= kSteps; ++i) {
+    const double v = step(i, kSteps);
+    add_row(table, {v, model.total(v, 0.0)}, [&](double albedo) { return model.total(v, albedo); });
   }
   return table;
 }
 
 }  // namespace
 
-Table table_from_model(const ShaderModel& model) {
-  return std::visit([](const auto& m) { return sample(m); }, model);
+Table table_from_model(const AnyModel& model) {
+  return std::visit([](const auto& m) { return table_of(m); }, model);
 }
 
 }  // namespace hemibake

@@ -84,11 +84,15 @@ void OutputFile::write(std::string_view bytes) {
   }
 }
 
-void OutputFile::commit() {
+void OutputFile::finish() {
   if (fsync(descriptor_) != 0) fail_write(path_, errno);
   const int closed = close(descriptor_);
   descriptor_ = -1;
   if (closed != 0) fail_write(path_, errno);
+}
+
+void OutputFile::commit() {
+  if (descriptor_ >= 0) finish();
   if (rename(temporary_path_.c_str(), target_.c_str()) != 0) fail_write(path_, errno);
   committed_ = true;
 }

@@ -27,7 +27,10 @@ class OutputFile {
 
   // Appends. Throws InputError where not everything could be written.
   void write(std::string_view bytes);
-  // Flushes to the disk, checks and renames. To be called once; throws InputError where the disk is full.
+  // Flushes to the disk and closes: commit() can then only fail to rename. Throws InputError where the disk is
+  // full.
+  void finish();
+  // Finishes, where that was not done yet, and renames. To be called once; throws InputError.
   void commit();
 
  private:

@@ -5,6 +5,7 @@
 // Source: B. Mayaux, "Study Notes: Improved Ambient Occlusion", 2018 (the notes).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -51,18 +52,20 @@ T bounded_direct_factor(X ao, const T& k0, const T& k1) {
   return ao * (T(1) + (X(1) - ao) * (k0 + (k1 - k0) * (ao * ao)));
 }
 
-// Returns 1 − bounded_direct_factor without cancellation near α = 1.
+// Returns 1 − bounded_direct_factor, (1−α)((1−α) + α(1−s)), without cancellation near α = 1, also with k1
+// = 1.
 template <class T, class X>
 T bounded_blocked_factor(X ao, const T& k0, const T& k1) {
-  return (X(1) - ao) * (T(1) - ao * (k0 + (k1 - k0) * (ao * ao)));
+  const X rest = X(1) - ao;
+  return rest * (rest + ao * ((T(1) - k1) + (k1 - k0) * (rest * (X(1) + ao))));
 }
 
 // Returns 1 − τ of the bounded model, the share of the light under way that each bounce sends out to the sky:
-// q(1 − d(1−F₀)/(1+3F₀)), which rises from q(1−d) in the dark to q in the open.
-// direct: F₀; blocked: 1 − F₀; 0..1. q: (0, 1]. d: [0, 1).
+// q(1 − d(1−F₀)/(1+3F₀)), written as dark + (open − dark) · 4F₀/(1+3F₀), where no 1 − d cancels.
+// direct: F₀, 0..1. dark: q(1−d), the share at F₀ = 0. open: q, at F₀ = 1.
 template <class T, class X>
-T bounded_escape_share(X direct, X blocked, const T& q, const T& d) {
-  return q * (T(1) - d * (blocked / (X(1) + X(3) * direct)));
+T bounded_escape_share(X direct, const T& dark, const T& open) {
+  return dark + (open - dark) * (X(4) * direct / (X(1) + X(3) * direct));
 }
 
 // Returns E/π over all bounces, notes eq. 10 with F₁ = (1 − F₀)(1 − τ) so that no light is lost at albedo 1:
@@ -72,6 +75,34 @@ template <class T, class X>
 T total_factor(X direct, X blocked, const T& escape, X albedo) {
   const T out = albedo * escape;
   return direct + blocked * (out / (X(1) - albedo + out));
+}
+
+// Returns E/π over all bounces, 1 − (1−V)(1−ρ)/(1 − ρ + ρg): total_factor from V and the escape share g. V at
+// ρ = 0, 1 at ρ = 1, in [V, 1], rises with V, g and ρ.
+// visibility: V = E₀/π, 0..1. escape: g = 1 − τ, the share of the light under way that each bounce sends out
+// to the sky, 0..1. albedo: ρ, 0..1. Source: eq. 10 of the notes; with g = V, Stewart and Langer 1997,
+// "Towards Accurate Recovery of Shape from Shading under Diffuse Lighting".
+template <class T, class X>
+T escape_irradiance(X visibility, const T& escape, X albedo) {
+  const X kept = X(1) - albedo;
+  if (kept == X(0)) return T(1);  // also where no light escapes
+  return T(1) - (X(1) - visibility) * (kept / (kept + albedo * escape));
+}
+
+// Returns E/π over all bounces from the light at two albedos: the curve through (0, V), (r, E_r) and (1, 1)
+// that escape_irradiance draws with the g of the texel. In [V, 1], rises with ρ and E_r; with V up to ρ = r,
+// and beyond r it falls with V, since the same E_r then needs a smaller g.
+// visibility: V, 0..1. bounce: E_r, E/π of all bounces at albedo r, 0..1; below V it counts as V. albedo: ρ,
+// 0..1. bounce_albedo: r, inside 0..1.
+template <class X>
+X bounce_map_irradiance(X visibility, X bounce, X albedo, X bounce_albedo) {
+  if (albedo == X(1)) return X(1);
+  const X blocked = X(1) - visibility;
+  const X missing = std::clamp(X(1) - bounce, X(0), blocked);
+  const X kept = (X(1) - albedo) * missing;
+  const X gained = albedo * ((X(1) - bounce_albedo) / bounce_albedo) * (blocked - missing);
+  if (kept + gained == X(0)) return visibility;  // E_r = 1 at ρ = 0, or V = 1
+  return X(1) - blocked * (kept / (kept + gained));
 }
 
 // Smallest 1 − τ of the guarded model: the formulas give 0 at α = 0, where the total at ρ = 1 would be 0/0.

@@ -1,7 +1,7 @@
 // Evaluates fitted models in float or double as a shader would (formulas: model/closed_forms.h). Results are
 // irradiance relative to an open surface, E/π under a sky of radiance 1.
 //
-// Every model gives, for ao = α and albedo = ρ in 0..1, ends included:
+// Every model of α gives, for ao = α and albedo = ρ in 0..1, ends included:
 //   direct(α)        F₀, the light that comes straight from the sky
 //   first_bounce(α)  F₁, the light of one bounce at albedo 1
 //   bounce_ratio(α)  τ, each further bounce over the one before, at albedo 1
@@ -34,7 +34,7 @@ struct BoundedModel {
   }
   template <class T>
   T escape(T ao) const {
-    return bounded_escape_share(direct(ao), blocked(ao), static_cast<T>(q), static_cast<T>(d));
+    return bounded_escape_share(direct(ao), static_cast<T>(q * (1 - d)), static_cast<T>(q));
   }
   template <class T>
   T first_bounce(T ao) const {
@@ -105,7 +105,48 @@ struct GuardedModel {
   }
 };
 
-// Holds a model that textures, pictures and shader texts can be made with.
+// Gives all bounces from V alone, with g = dark + (open − dark)V. Rises with V and ρ for all constants.
+struct VisibilityModel {
+  double dark = 0;  // 0..1: share of the light under way that a bounce sends out to the sky, where V = 0…
+  double open = 1;  // 0..1: …and where V = 1
+
+  template <class T>
+  T escape(T visibility) const {
+    return static_cast<T>(dark) + static_cast<T>(open - dark) * visibility;
+  }
+  template <class T>
+  T total(T visibility, T albedo) const {
+    return escape_irradiance(visibility, escape(visibility), albedo);
+  }
+};
+
+// Gives all bounces from V and α, with g = dark + (open − dark)α; by default g = α, without any constant.
+struct VisibilityAoModel {
+  double dark = 0;  // 0..1: g where α = 0…
+  double open = 1;  // 0..1: …and where α = 1
+
+  template <class T>
+  T escape(T ao) const {
+    return static_cast<T>(dark) + static_cast<T>(open - dark) * ao;
+  }
+  template <class T>
+  T total(T visibility, T ao, T albedo) const {
+    return escape_irradiance(visibility, escape(ao), albedo);
+  }
+};
+
+// Gives all bounces from two textures, V and E/π at one albedo: the planes `visibility` and `bounce` of a
+// bake.
+struct BounceMapModel {
+  double bounce_albedo = 0.9;  // r, inside 0..1: albedo of the second texture
+
+  template <class T>
+  T total(T visibility, T bounce, T albedo) const {
+    return bounce_map_irradiance(visibility, bounce, albedo, static_cast<T>(bounce_albedo));
+  }
+};
+
+// Holds a model of α that pictures and the report can be made with.
 using ShaderModel = std::variant<BoundedModel, GuardedModel>;
 
 // Evaluates max(V, jimenez_cubic), by default with the constants of Jimenez et al. 2016: all bounces at once.
@@ -121,5 +162,14 @@ struct JimenezModel {
     return std::max(visibility, jimenez_cubic(visibility, albedo, p.data()));
   }
 };
+
+// Holds any model that text and tables can be made of.
+using AnyModel = std::variant<VisibilityModel, VisibilityAoModel, BounceMapModel, BoundedModel, GuardedModel,
+                              JimenezModel>;
+
+// Returns a model of α as any model.
+inline AnyModel any_model(const ShaderModel& model) {
+  return std::visit([](const auto& m) { return AnyModel(m); }, model);
+}
 
 }  // namespace hemibake

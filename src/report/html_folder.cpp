@@ -80,6 +80,9 @@ ReportFolder read_report_folder(const fs::path& path) {
   folder.path = path;
   if (fs::exists(path / "bake.exr")) folder.bake = read_bake(path / "bake.exr");
   if (fs::exists(path / "curves.csv")) folder.curves = read_curves(path / "curves.csv");
+  if (folder.curves && folder.curves->index != CurveIndex::kAo)
+    throw InputError(
+        fmt::format("{}: curves over visibility, expected curves over ao", (path / "curves.csv").string()));
   if (fs::exists(path / "fit.json")) folder.fits = read_fits(path / "fit.json");
   folder.check = read_if_there(path / "check.json", "checks");
   folder.run = read_if_there(path / "run.json", "");

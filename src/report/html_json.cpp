@@ -35,8 +35,8 @@ Json json_from_curves(const Curves& curves, int bounces, std::span<const BinTota
   Json bins = Json::array();
   for (size_t j = 0; j < curves.bins.size(); ++j) {
     const CurveBin& bin = curves.bins[j];
-    Json& entry = bins.emplace_back(
-        Json{{"low", rounded(bin.ao_low)}, {"high", rounded(bin.ao_high)}, {"count", bin.count}});
+    Json& entry =
+        bins.emplace_back(Json{{"low", rounded(bin.low)}, {"high", rounded(bin.high)}, {"count", bin.count}});
     if (bin.count == 0) continue;
     entry["mean"] = entry["spread"] = Json::array();
     for (int b = 0; b < bounces; ++b) {
@@ -93,7 +93,7 @@ Json constants_of(const ShaderModel& model) {
 }
 
 Json json_from_model(const ReportModel& model, const Score* score) {
-  const auto text = [&](Language language) { return shader_text(model.model, language, model.origin); };
+  const auto text = [&](Language language) { return shader_text(any_model(model.model), language, model.origin); };
   return {{"id", model.id},
           {"title", model.title},
           {"constants", constants_of(model.model)},

@@ -40,6 +40,7 @@ BakedRun bake_run(const Surface& surface, BakeSettings settings) {
   if (settings.bounces > 0) settings.outputs.push_back(BakeOutput::kIrradiance);
   settings.keep_transport = true;
   settings.limit_memory = settings.estimate_errors = false;
+  settings.bounce_albedo.reset();
   MapSettings unused;
   resolve_defaults(unused, settings, [](const std::string&) { return true; });
   LoadedMap map;

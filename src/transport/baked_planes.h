@@ -11,10 +11,13 @@ namespace hemibake {
 struct Bake {
   int width = 0;
   int height = 0;
-  Grid<float> visible_fraction;         // channel `ao`: α, 0..1
+  Grid<float> visible_fraction;         // channel `ao`: α, the uniform visible fraction, 0..1
+  Grid<float> visibility;               // channel `visibility`: V = E₀/π, the cosine-weighted one, 0..1
   std::vector<Grid<float>> irradiance;  // channels `irradiance.00`…: E_b at albedo 1, 0..π
   Grid<float> total;                    // channel `total`: all bounces at albedo 1, 0..π
   Grid<float> residual;                 // channel `residual`: (π − Σ)/π not yet summed at albedo 1
+  Grid<float> bounce;                   // channel `bounce`: E/π of all bounces at albedo bounce_albedo, 0..1
+  double bounce_albedo = 0;             // inside 0..1 where `bounce` is there
   Grid<glm::vec3> normals;              // channels `normal.X/Y/Z`
   Grid<glm::vec3> bent_normals;         // channels `bent.X/Y/Z`
 };

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/statistics.h"
+#include "transport/light_at_albedo.h"
 #include "transport/solver/orthomin.h"
 
 namespace hemibake {
@@ -38,20 +39,21 @@ struct PatchBounces {
   const LightTransport& transport;
   std::vector<double> texel_direct;
   std::vector<double> current;  // E_b of the patches
-  std::vector<double> sum;      // E_0 + … + E_b of the patches
+  std::vector<double> sum;      // E_0 + … + E_b of the patches; empty: not needed
   std::vector<double> next;
 
-  explicit PatchBounces(const LightTransport& of)
+  PatchBounces(const LightTransport& of, bool with_sum)
       : transport(of),
         texel_direct(as_double(of.direct_over_pi.values)),
         current(as_double(of.patch_direct())),
-        sum(current),
-        next(current.size()) {}
+        next(current.size()) {
+    if (with_sum) sum = current;
+  }
 
   void bounce() {
     multiply(transport.bounce_matrix(), current, next);
     current.swap(next);
-    add_to(sum, current);
+    if (!sum.empty()) add_to(sum, current);
   }
 
   // Returns E_0 + … + E_{b+1} of the texels, from the sum to E_b of the patches.
@@ -167,7 +169,9 @@ void compute_residual(const std::function<double(size_t)>& total_over_pi, int wi
 Bounces bounce_light(const LightTransport& transport, const BounceOptions& options) {
   const int width = transport.direct_over_pi.width, height = transport.direct_over_pi.height;
   Bounces result;
-  PatchBounces patches(transport);
+  PatchBounces patches(transport, options.converge_tolerance.has_value());
+  std::optional<LightAtAlbedo> at_albedo;
+  if (options.bounce_albedo) at_albedo.emplace(patches.current, *options.bounce_albedo);
   std::vector<double> total = patches.texel_direct, texel_light(total.size());
   result.irradiance.push_back(times_pi(total, width, height));
 
@@ -178,9 +182,11 @@ Bounces bounce_light(const LightTransport& transport, const BounceOptions& optio
     add_to(total, texel_light);
     result.irradiance.push_back(times_pi(texel_light, width, height));
     patches.bounce();
+    if (at_albedo) at_albedo->add(patches.current);
     progress.advance(1);
   }
   result.bounces_made = options.bounces;
+  if (at_albedo) result.at_albedo = at_albedo->finish(transport, patches.current);
 
   if (options.converge_tolerance) {
     if (rows_sum_to_one(transport.final_gather, transport.direct_over_pi.values) &&

@@ -15,6 +15,7 @@ struct BounceOptions {
   int bounces = 20;                          // stored one by one, 0..
   std::optional<double> converge_tolerance;  // if set: go on until every |residual| is below it
   int max_bounces = 2000;                    // limit of bounces and of the solver's products
+  std::optional<double> bounce_albedo = {};  // if set, inside 0..1: albedo of `Bounces::at_albedo`
 };
 
 struct Bounces {
@@ -23,7 +24,8 @@ struct Bounces {
   // (π − Σ)/π still under way. Converged, it may be negative by less than the tolerance: the solver comes
   // near the sum from both sides. Unconverged texels keep the sum of the stored bounces.
   Grid<float> residual;
-  int bounces_made = 0;  // stored, and products of the patch form factors to converge
+  Grid<float> at_albedo;  // E/π of all bounces at `bounce_albedo`, to 10⁻⁴ in the worst texel; 0..1
+  int bounces_made = 0;   // stored, and products of the patch form factors to converge
   double mean_residual = 0, worst_residual = 0;
   uint32_t worst_texel = 0;
   // With a tolerance: texels whose residual is not below it, and those of them that see only themselves,

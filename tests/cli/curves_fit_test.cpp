@@ -128,5 +128,81 @@ TEST_F(CurvesAndFit, PathsFailBeforeTheWork) {
   expect_failure("curves c.csv -o d.csv --bins 0", 2, "--bins: '0', expected a whole number from 1 to 65536");
 }
 
+// Returns the widest line, in bytes; UTF-8 makes it no narrower.
+size_t widest_line(const std::string& text) {
+  size_t widest = 0, begin = 0;
+  for (size_t end = text.find('\n'); end != std::string::npos; begin = end + 1, end = text.find('\n', begin))
+    widest = std::max(widest, end - begin);
+  return widest;
+}
+
+const std::string kStored = std::string(HEMIBAKE_SOURCE_DIR) + "/fits/curves";
+
+TEST_F(CurvesAndFit, AFolderOfMapsHasOneSetOfConstantsAndAWinner) {
+  std::filesystem::create_directories(folder_ / "maps/bricks");
+  std::filesystem::copy(kStored + "/bricks.csv", folder_ / "maps/bricks/curves.csv");
+  std::filesystem::copy(kStored + "/noise.csv", folder_ / "maps/noise.csv");
+  write_model_bake("maps/model.exr");
+  write_bytes(folder_ / "maps/list.csv", "name,size\n");
+  const CommandOutcome fit = run("fit maps -o f.json");
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_LE(widest_line(fit.out), 100U) << fit.out;
+  EXPECT_NE(fit.err.find("maps/list.csv: skipped: no curves"), std::string::npos) << fit.err;
+
+  const nlohmann::json json = nlohmann::json::parse(read_bytes(folder_ / "f.json"));
+  EXPECT_EQ(json["provenance"]["input"], "bricks/curves.csv, model.exr, noise.csv");
+  ASSERT_EQ(json["maps"].size(), 3U);
+  EXPECT_EQ(json["maps"][0]["map"], "bricks");
+  EXPECT_NEAR(json["maps"][0]["models"]["bounded"]["parameters"]["bounded_F0"]["k0"].get<double>(), 0.1098,
+              0.03);
+  const std::string winner = json["held_out"]["winner"];
+  for (const auto& [model, rms] : json["held_out"]["rms"].items())
+    EXPECT_GE(rms, json["held_out"]["rms"][winner]) << model;
+  EXPECT_NE(fit.out.find("carries best from map to map: " + winner), std::string::npos);
+  EXPECT_EQ(run("check f.json").exit_code, 0);
+}
+
+TEST_F(CurvesAndFit, FoldersWithoutMapsAndMapsOfOneNameAreRefused) {
+  std::filesystem::create_directories(folder_ / "maps/a");
+  const std::string none =
+      "maps: no maps in this folder, expected */curves.csv, */bake.exr, curves as CSV or bakes as EXR; make "
+      "them "
+      "with 'hemibake run' or 'hemibake bake'";
+  expect_failure("fit maps -o f.json", 2, none);
+  expect_failure("compare maps", 2, none);
+  std::filesystem::copy(kStored + "/bricks.csv", folder_ / "maps/a/curves.csv");
+  std::filesystem::copy(kStored + "/bricks.csv", folder_ / "a.csv");
+  expect_failure("fit maps a.csv -o f.json", 2,
+                 "maps/a/curves.csv, a.csv: two maps of the name 'a', expected a name each; rename one");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "f.json"));
+}
+
+TEST_F(CurvesAndFit, CurvesOverVisibilityFitWhatTakesThem) {
+  write_model_bake("b.exr");
+  ASSERT_EQ(run("curves b.exr -o v.csv --bins 40 --index visibility").exit_code, 0);
+  ASSERT_EQ(run("curves b.exr -o a.csv --bins 40").exit_code, 0);
+  EXPECT_EQ(read_curves(folder_ / "v.csv").index, CurveIndex::kVisibility);
+  EXPECT_NE(run("check v.csv").out.find("ok      E0/pi outside its bin, worst"), std::string::npos);
+  const CommandOutcome fit = run("fit v.csv -o f.json --json");
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  const nlohmann::json json = nlohmann::json::parse(fit.out);
+  EXPECT_TRUE(json.contains("visibility"));
+  EXPECT_FALSE(json.contains("bounded_F0"));
+  EXPECT_EQ(json["visibility"]["abscissa"], "visibility");
+  for (const std::string model : {"bounded", "published", "visibility-ao", "bounces"})
+    expect_failure("fit v.csv -o g.json --model " + model, 2,
+                   "v.csv: curves over visibility, expected curves over ao for the model " + model);
+  expect_failure("fit v.csv a.csv -o g.json", 2,
+                 "v.csv, a.csv: curves over ao and over visibility, expected all of them over the same");
+}
+
+TEST_F(CurvesAndFit, ComparisonsAreAtMostAHundredColumnsWide) {
+  const CommandOutcome compare = run("compare '" + kStored + "'");
+  ASSERT_EQ(compare.exit_code, 0) << compare.err;
+  EXPECT_LE(widest_line(compare.out), 100U) << compare.out;
+  for (const std::string name : {"bricks", "noise", "g = V", "g = a", "visibility-ao"})
+    EXPECT_NE(compare.out.find(name), std::string::npos) << name;
+}
+
 }  // namespace
 }  // namespace hemibake

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/constants.h"
@@ -48,17 +49,80 @@ class Export : public testing::Test {
 };
 
 TEST_F(Export, EveryLanguageAndModel) {
-  for (const std::string language : {"glsl", "hlsl", "cpp"}) {
-    for (const std::string model : {"bounded", "published"}) {
-      const CommandOutcome outcome =
-          run(fmt::format("export f.json --to {} --model {} -o out.txt --json", language, model));
+  for (const std::string language : {"glsl", "hlsl", "wgsl", "msl", "osl", "cpp"}) {
+    for (const std::string model :
+         {"visibility", "visibility-ao", "bounce-map", "bounded", "published", "jimenez"}) {
+      const bool fitted = model == "bounded" || model == "published";
+      const CommandOutcome outcome = run(fmt::format("export {} --to {} --model {} -o out.txt --json",
+                                                     fitted ? "f.json" : "none", language, model));
       EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
       EXPECT_EQ(nlohmann::json::parse(outcome.out).at("model"), model);
       const std::string text = read_bytes(folder_ / "out.txt");
-      EXPECT_NE(text.find("multi_bounce_irradiance(float ao, "), std::string::npos);
-      EXPECT_NE(text.find("// input: c.csv\n"), std::string::npos);
+      EXPECT_NE(text.find("multi_bounce"), std::string::npos);
+      EXPECT_EQ(text.find("// input: c.csv\n") != std::string::npos, fitted);
+      // Nothing of the maker's machine.
+      for (const char* private_word : {"sha256", "command", "hemibake fit", "hemibake run", "/tmp"})
+        EXPECT_EQ(text.find(private_word), std::string::npos) << text;
     }
   }
+}
+
+TEST_F(Export, LanguageFollowsFromTheName) {
+  const std::map<std::string, std::string> names = {
+      {"a.frag", "glsl"}, {"a.GLSL", "glsl"},  {"a.gdshaderinc", "glsl"}, {"a.hlsl", "hlsl"},
+      {"a.ush", "hlsl"},  {"a.cginc", "hlsl"}, {"a.wgsl", "wgsl"},        {"a.metal", "msl"},
+      {"a.osl", "osl"},   {"a.h", "cpp"},      {"a.hpp", "cpp"},          {"a.csv", "csv"}};
+  for (const auto& [name, language] : names) {
+    const CommandOutcome outcome = run("export none --model visibility-ao --json -o " + name);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(nlohmann::json::parse(outcome.out).at("to"), language) << name;
+  }
+  EXPECT_EQ(run("export none --model visibility-ao --to msl -o metal.h").exit_code, 0);
+  expect_failure(
+      "export none --model visibility-ao -o out.txt",
+      "out.txt: its name says no language, expected a name such as model.glsl, or --to with one of "
+      "glsl, hlsl, wgsl, msl, osl, cpp, csv");
+  expect_failure("export none --model visibility-ao --to hlsl -o out.glsl",
+                 "out.glsl: its name says glsl, but --to says hlsl; expected one of them, or both the same");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.glsl"));
+}
+
+TEST_F(Export, ConstantsAreThoseOfTheFit) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_bytes(folder_ / "f.json"));
+  json["visibility"] = json["bounded_tau"];
+  json["visibility"]["parameters"] = {{"dark", {{"value", 0.0625}, {"stderr", 0.01}}},
+                                      {"open", {{"value", 0.8125}, {"stderr", nullptr}}}};
+  json["visibility_ao"] = json["visibility"];
+  json["provenance"]["bounce_albedo"] = 0.875;
+  write_bytes(folder_ / "v.json", json.dump());
+  for (const std::string model : {"visibility", "visibility-ao"}) {
+    ASSERT_EQ(run("export v.json -o v.glsl --model " + model).exit_code, 0);
+    EXPECT_NE(read_bytes(folder_ / "v.glsl").find("const float hemibake_dark = 0.0625;"), std::string::npos);
+    ASSERT_EQ(run("export v.json -o v.glsl --constants none --model " + model).exit_code, 0);
+    EXPECT_EQ(read_bytes(folder_ / "v.glsl").find("hemibake_dark"), std::string::npos);
+  }
+  ASSERT_EQ(run("export f.json -o v.glsl --model visibility-ao").exit_code, 0);  // needs no fit
+  const auto albedo_of = [&](const std::string& arguments) {
+    EXPECT_EQ(run("export " + arguments + " -o m.glsl --model bounce-map").exit_code, 0);
+    const std::string text = read_bytes(folder_ / "m.glsl"), name = "hemibake_bounce_albedo = ";
+    return std::stod(text.substr(text.find(name) + name.size()));
+  };
+  EXPECT_EQ(albedo_of("v.json"), 0.875);
+  EXPECT_EQ(albedo_of("none"), 0.9);
+  EXPECT_EQ(albedo_of("v.json --bounce-albedo 0.5"), 0.5);
+}
+
+TEST_F(Export, TablesOfTwoInputsAreLong) {
+  ASSERT_EQ(run("export none --model visibility-ao -o t.csv").exit_code, 0);
+  const Table table = read_csv(folder_ / "t.csv");
+  ASSERT_EQ(table.rows.size(), 51U * 51U);
+  EXPECT_EQ(table.columns[0], "visibility");
+  EXPECT_EQ(table.columns[1], "ao");
+  const size_t half = find_column(table, "total_0.5").value();
+  for (const auto& row : table.rows)
+    EXPECT_NEAR(row[half].value(), VisibilityAoModel{}.total(row[0].value(), row[1].value(), 0.5), 1e-12);
+  ASSERT_EQ(run("export none --model bounce-map -o t.csv").exit_code, 0);
+  EXPECT_EQ(read_csv(folder_ / "t.csv").columns[1], "bounce");
 }
 
 TEST_F(Export, TableHoldsTheModel) {
@@ -86,6 +150,14 @@ TEST_F(Export, UnusableFitsAreRefused) {
   write_bytes(folder_ / "bad.json", json.dump());
   expect_failure("export bad.json --to glsl -o out.txt",
                  "bad.json: bounded tau has no parameter q, expected one");
+  expect_failure("export published.json --model visibility --to glsl -o out.txt",
+                 "published.json: no fit visibility, expected the fits of model 'visibility'");
+  expect_failure("export none --to glsl -o out.txt",
+                 "none: the model bounded has no constants without fits, expected FIT.json");
+  expect_failure("export none --model visibility --bounce-albedo 0.8 --to glsl -o out.txt",
+                 "--bounce-albedo: the model visibility has none, expected --model bounce-map");
+  expect_failure("export none --model visibility --prefix 9a --to glsl -o out.txt",
+                 "--prefix: '9a', expected letters, digits and underscores, and no digit at first");
   expect_failure("export c.csv --to glsl -o none/out.txt",
                  "none/out.txt: could not write: No such file or directory");
 }

@@ -8,6 +8,7 @@
 
 #include "core/constants.h"
 #include "core/error.h"
+#include "curves/check_curves.h"
 
 namespace hemibake {
 namespace {
@@ -32,7 +33,7 @@ TEST(Curves, BinEdgesBelongToTheBinAboveAndOneToTheLast) {
   const std::vector<double> counts{2, 1, 0, 3};
   for (size_t j = 0; j < 4; ++j) {
     EXPECT_EQ(curves.bins[j].count, counts[j]) << "bin " << j;
-    EXPECT_DOUBLE_EQ(curves.bins[j].ao_low, 0.25 * static_cast<double>(j));
+    EXPECT_DOUBLE_EQ(curves.bins[j].low, 0.25 * static_cast<double>(j));
     EXPECT_DOUBLE_EQ(bin_center(curves.bins[j]), 0.25 * static_cast<double>(j) + 0.125);
   }
 }
@@ -41,7 +42,7 @@ TEST(Curves, MeanAndSpreadOfEveryBounce) {
   const Bake bake = make_bake({0.1F, 0.2F, 0.9F}, {{1, 2, 3}, {0.5F, 0.5F, 0.25F}});
   const Curves curves = make_curves(bake, 2);
   EXPECT_EQ(curves.bounce_count, 2);
-  EXPECT_NEAR(curves.bins[0].ao_mean, 0.15, 1e-8);
+  EXPECT_NEAR(curves.bins[0].mean, 0.15, 1e-8);
   EXPECT_DOUBLE_EQ(curves.bins[0].bounces[0].mean, 1.5);
   EXPECT_DOUBLE_EQ(curves.bins[0].bounces[0].stddev, 0.5);
   EXPECT_DOUBLE_EQ(curves.bins[0].bounces[1].mean, 0.5);
@@ -97,6 +98,54 @@ TEST(Curves, TailOfABinWithTimeToSpareIsGeometric) {
   EXPECT_DOUBLE_EQ(total_over_pi(bin, 0.5), 1 / (1 - 0.25) / kPi);
   bin.bounces.pop_back();
   EXPECT_DOUBLE_EQ(total_over_pi(bin, 1), 1.5 / kPi) << "two bounces tell no ratio";
+}
+
+TEST(Curves, OverVisibilityTexelsAreSortedByDirectLightOverPi) {
+  const float pi = static_cast<float>(kPi);
+  Bake bake = make_bake({}, {{0, 0.3F * pi, 0.3F * pi, pi, 1.0077F * pi}, {0, 1, 2, 0, 0}});
+  bake.width = 5;
+  bake.visible_fraction = {};
+  for (const bool has_plane : {false, true}) {
+    const Curves curves = make_curves(bake, 4, CurveIndex::kVisibility);
+    EXPECT_EQ(curves.index, CurveIndex::kVisibility) << has_plane;
+    const std::vector<double> counts{1, 2, 0, 2};
+    for (size_t j = 0; j < 4; ++j) EXPECT_EQ(curves.bins[j].count, counts[j]) << "bin " << j;
+    EXPECT_NEAR(curves.bins[1].mean, 0.3, 1e-7);
+    EXPECT_NEAR(bin_visibility(curves.bins[1]), 0.3, 1e-7);
+    EXPECT_DOUBLE_EQ(curves.bins[1].bounces[1].mean, 1.5);
+    EXPECT_LE(curves.bins[3].mean, 1) << "rays of 2018 give V up to 1.0078";
+    bake.visibility = Grid<float>(5, 1);
+    bake.visibility.values = {0, 0.3F, 0.3F, 1, 1};
+  }
+  EXPECT_THROW(make_curves(bake, 4, CurveIndex::kAo), InputError);
+  Curves over_ao;
+  const Curves over_v = make_curves(bake, 4, CurveIndex::kVisibility);
+  EXPECT_THROW(pool_curves(std::vector<Curves>{over_v, over_ao}), InputError);
+}
+
+// In a pit of a spherical cap every texel has V = C, and so has the chance of escape: m = C. Any histogram of
+// the same texels gives the same m, since the spread within bins is part of ⟨V²⟩.
+TEST(Curves, MeanEscapeIsThatOfTheTexels) {
+  const float pi = static_cast<float>(kPi);
+  EXPECT_NEAR(*mean_escape(make_curves(make_bake({0.2F, 0.9F}, {{0.4F * pi, 0.4F * pi}}), 10)), 0.4, 1e-6);
+  const Bake bake = make_bake({0.1F, 0.2F, 0.5F, 0.9F}, {{0.1F * pi, 0.6F * pi, 0.7F * pi, pi}});
+  const double mean = 2.4 / 4, squares = (0.01 + 0.36 + 0.49 + 1) / 4;
+  for (const int bins : {1, 2, 7, 100})
+    for (const CurveIndex index : {CurveIndex::kAo, CurveIndex::kVisibility})
+      EXPECT_NEAR(*mean_escape(make_curves(bake, bins, index)), (mean - squares) / (1 - mean), 1e-6);
+  EXPECT_FALSE(mean_escape(make_curves(make_bake({1, 1}, {{pi, pi}}), 10)).has_value()) << "flat ground";
+  EXPECT_EQ(*mean_escape(make_curves(make_bake({0, 0}, {{0, 0}}), 10)), 0);
+}
+
+TEST(Curves, ChecksOfCurvesOverVisibilityHoldDirectLightToItsBin) {
+  const float pi = static_cast<float>(kPi);
+  // V = 0.9 at α = 0.3 is out of α's bounds, and right for curves over V.
+  const Bake bake = make_bake({0.3F, 0.35F}, {{0.9F * pi, 0.92F * pi}});
+  EXPECT_FALSE(all_passed(check_curves(make_curves(bake, 10), 1e-5, false)));
+  Curves curves = make_curves(bake, 10, CurveIndex::kVisibility);
+  EXPECT_TRUE(all_passed(check_curves(curves, 1e-5, false)));
+  curves.bins[9].bounces[0].mean = 0.5 * kPi;
+  EXPECT_FALSE(all_passed(check_curves(curves, 1e-5, false)));
 }
 
 TEST(Curves, UnusableTexelsAreNamed) {

@@ -7,6 +7,8 @@
 #include "core/constants.h"
 #include "support/maps.h"
 #include "surface/synthetic/analytic.h"
+#include "tracers/slice/slice.h"
+#include "transport/trace_surface.h"
 
 namespace hemibake {
 namespace {
@@ -98,6 +100,43 @@ TEST(Horizon, ConvergesOnTheGroove) {
       EXPECT_LT(close, middle);
       EXPECT_LT(close, 0.005);
     }
+}
+
+// A shader that has V has α for two cosines a slice: one search of the horizons gives both.
+TEST(Horizon, BothKindsComeFromOneSearch) {
+  const Surface surface = white_noise_surface(16, 16, 3);
+  HorizonOptions options;
+  options.kind = AoKind::kCosine;
+  const Estimate of_visibility = estimate_horizon(surface, options);
+  options.kind = AoKind::kUniform;
+  const Estimate of_ao = estimate_horizon(surface, options);
+  EXPECT_EQ(of_visibility.ao.values, of_ao.other_ao.values);
+  EXPECT_EQ(of_visibility.other_ao.values, of_ao.ao.values);
+}
+
+// With many azimuths and steps both are the tracer's, which takes the horizon of every triangle. What
+// remains: samples that jump over a crest, here 12 steps a texel, and what lies beyond the radius.
+TEST(Horizon, VisibilityAndAoConvergeToTheTracer) {
+  for (const SyntheticKind kind : {SyntheticKind::kNoise, SyntheticKind::kBricks, SyntheticKind::kConcrete}) {
+    const Surface surface = synthetic_surface(kind, 32, 32);
+    SliceOptions slices;
+    slices.azimuths = 256;
+    const LightTransport truth = trace_surface(*make_slice_tracer(surface, slices), true);
+    const double radius_m = 3;
+    const Estimate estimate = estimate_horizon(surface, fine(AoKind::kCosine, radius_m, 256, 12 * 96));
+    double worst_ao = 0, worst_visibility = 0;
+    for (size_t i = 0; i < estimate.ao.size(); ++i) {
+      const double ao = static_cast<double>(truth.visible_fraction[i]);
+      const double visibility = static_cast<double>(truth.direct_over_pi[i]);
+      worst_ao = std::max(worst_ao, std::abs(static_cast<double>(estimate.other_ao[i]) - ao));
+      worst_visibility =
+          std::max(worst_visibility, std::abs(static_cast<double>(estimate.ao[i]) - visibility));
+    }
+    std::printf("horizon against the tracer: largest difference of V %.4f, of ao %.4f\n", worst_visibility,
+                worst_ao);
+    EXPECT_LT(worst_ao, 0.01);
+    EXPECT_LT(worst_visibility, 0.01);
+  }
 }
 
 TEST(Horizon, BentNormalLooksAlongTheMiddleOfTheSky) {

@@ -108,7 +108,7 @@ TEST(BounceFit, RecoversExactParameters) {
 
 TEST(JimenezFit, RecoversTheirConstants) {
   Curves curves = exact_curves({}, 2);
-  std::vector<CurvePoint> points = visibility_points(curves, fit_albedos(), Weights::kNone);
+  std::vector<CurvePoint> points = total_points(curves, fit_albedos(), Abscissa::kVisibility, Weights::kNone);
   for (CurvePoint& point : points) {
     point.value = jimenez_cubic(point.ao, point.albedo, kJimenezConstants.data());
   }

@@ -54,9 +54,27 @@ TEST(FittedModel, NamesWhatIsMissingOrOutOfRange) {
   EXPECT_EQ(error_of(fits, ModelKind::kBounded), "bounded tau has no parameter d, expected one");
   fits.pop_back();
   EXPECT_FALSE(has_model(fits, ModelKind::kBounded));
-  EXPECT_EQ(error_of(fits, ModelKind::kBounded),
-            "no fit bounded_tau, expected the fits of model 'bounded'");
+  EXPECT_EQ(error_of(fits, ModelKind::kBounded), "no fit bounded_tau, expected the fits of model 'bounded'");
   EXPECT_TRUE(has_model(fits, ModelKind::kMayaux2018));
+}
+
+TEST(FittedModel, EscapesComeFromTheirFits) {
+  std::vector<NamedFit> fits(1);
+  fits[0].name = "visibility_ao";
+  fits[0].fit.parameters = {{"dark", 0.1, 0.01}, {"open", 0.9, 0.01}};
+  const auto model = std::get<VisibilityAoModel>(any_fitted_model(fits, ModelKind::kVisibilityAo));
+  EXPECT_EQ(model.dark, 0.1);
+  EXPECT_EQ(model.open, 0.9);
+  EXPECT_THROW(any_fitted_model(fits, ModelKind::kVisibility), InputError);
+  fits[0].fit.parameters[1].value = 1.01;
+  EXPECT_THROW(any_fitted_model(fits, ModelKind::kVisibilityAo), InputError);
+}
+
+TEST(FittedModel, OnlyTheBoundedModelNeedsFits) {
+  for (const std::string& name : model_kind_names()) {
+    const ModelKind kind = model_kind_from_string(name);
+    EXPECT_EQ(model_without_fits(kind).has_value(), kind != ModelKind::kBounded) << name;
+  }
 }
 
 TEST(FittedModel, KindsHaveTheNamesOfTheCommandLine) {

@@ -56,8 +56,8 @@ void expect_honest_errors(Weights weights) {
   for (int t = 0; t < trials; ++t) {
     Curves curves = exact_curves(k, e, a, b);
     for (CurveBin& bin : curves.bins) {
-      bin.count = weights == Weights::kNone ? 100 : 10 + 400 * bin.ao_low;
-      const double stddev = weights == Weights::kStandardError ? 0.05 + 0.3 * bin.ao_high : 0.2;
+      bin.count = weights == Weights::kNone ? 100 : 10 + 400 * bin.low;
+      const double stddev = weights == Weights::kStandardError ? 0.05 + 0.3 * bin.high : 0.2;
       for (BounceStatistics& bounce : bin.bounces) {
         bounce.stddev = stddev;
         bounce.mean += stddev / std::sqrt(bin.count) * normal(random);
@@ -85,7 +85,7 @@ TEST(PublishedFit, StandardErrorsCoverWeightedByStandardError) {
 TEST(PublishedFit, EmptyBinsAreSkipped) {
   Curves curves = exact_curves(0.8, 1.05, 38, 3.8);
   for (size_t j = 0; j < 100; j += 3)
-    curves.bins[j] = {curves.bins[j].ao_low, curves.bins[j].ao_high, 0, 0, {{}, {}}};
+    curves.bins[j] = {curves.bins[j].low, curves.bins[j].high, 0, 0, {{}, {}}};
   const Fit first = fit_first_bounce(points_of(curves, 1));
   EXPECT_EQ(first.points, 66);
   EXPECT_NEAR(parameter_value(first, "A"), 38, 1e-5);

@@ -42,12 +42,26 @@ TEST(CurvesFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(table_from_curves(curves).rows, table.rows);
 }
 
+TEST(CurvesFile, CurvesOverVisibilityNameItInTheirColumns) {
+  Curves curves = make_example();
+  curves.index = CurveIndex::kVisibility;
+  Table table = table_from_curves(curves);
+  EXPECT_EQ(
+      std::vector<std::string>(table.columns.begin(), table.columns.begin() + 5),
+      (std::vector<std::string>{"bin", "visibility_low", "visibility_high", "visibility_mean", "count"}));
+  const Curves read = curves_from_table(table, "c.csv");
+  EXPECT_EQ(read.index, CurveIndex::kVisibility);
+  EXPECT_EQ(table_from_curves(read).rows, table.rows);
+  table.rows[1][1] = 0.25;
+  EXPECT_EQ(complaint(table), "c.csv:3: visibility_low is 0.25, expected 0.5 where the bin before ends");
+}
+
 TEST(CurvesFile, ReadsThePublishedFormat) {
   const Table table{{"bin", "E0", "E1", "sum_over_pi"}, {{0, 0.5, 0.25, 0.3}, {1, 2, 0.5, 0.9}}};
   const Curves curves = curves_from_table(table, "c.csv");
   EXPECT_FALSE(curves.has_counts);
   EXPECT_EQ(curves.bounce_count, 2);
-  EXPECT_EQ(curves.bins[1].ao_low, 0.5);
+  EXPECT_EQ(curves.bins[1].low, 0.5);
   EXPECT_EQ(curves.bins[1].bounces[0].mean, 2);
 }
 

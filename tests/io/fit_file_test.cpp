@@ -10,7 +10,7 @@ namespace {
 FitFile make_example() {
   Fit fit{"m",
           "a*b",
-          {{"A", 2, 0.5}, {"B", 3, std::nullopt}},
+          {{"A", 2, 0.5, false}, {"B", 3, std::nullopt, true}},
           {0.25, 0, 0, 0},
           0.1,
           0.2,
@@ -20,7 +20,7 @@ FitFile make_example() {
           Weights::kStandardError};
   Fit exact = fit;
   exact.aicc.reset();
-  return {{{"F0", fit}, {"F1", exact}}, {{"version", "1"}}};
+  return {{{"F0", fit}, {"F1", exact}}, {{"version", "1"}}, {}};
 }
 
 TEST(FitFile, JsonIsTheContractOfTheDesign) {
@@ -28,10 +28,10 @@ TEST(FitFile, JsonIsTheContractOfTheDesign) {
   EXPECT_EQ(
       json.dump(),
       R"({"F0":{"model":"m","formula":"a*b","parameters":{"A":{"value":2.0,"stderr":0.5},)"
-      R"("B":{"value":3.0,"stderr":null}},"covariance":[[0.25,0.0],[0.0,0.0]],"rms":0.1,"max_error":0.2,)"
+      R"("B":{"value":3.0,"stderr":null,"on_bound":true}},"covariance":[[0.25,0.0],[0.0,0.0]],"rms":0.1,"max_error":0.2,)"
       R"("points":7,"aicc":1.5,"abscissa":"published","weights":"stderr"},)"
       R"("F1":{"model":"m","formula":"a*b","parameters":{"A":{"value":2.0,"stderr":0.5},)"
-      R"("B":{"value":3.0,"stderr":null}},"covariance":[[0.25,0.0],[0.0,0.0]],"rms":0.1,"max_error":0.2,)"
+      R"("B":{"value":3.0,"stderr":null,"on_bound":true}},"covariance":[[0.25,0.0],[0.0,0.0]],"rms":0.1,"max_error":0.2,)"
       R"("points":7,"aicc":null,"abscissa":"published","weights":"stderr"},)"
       R"("provenance":{"version":"1"}})");
 }
@@ -39,6 +39,28 @@ TEST(FitFile, JsonIsTheContractOfTheDesign) {
 TEST(FitFile, ReadsBackWhatWasWritten) {
   const nlohmann::ordered_json json = json_from_fits(make_example());
   EXPECT_EQ(json_from_fits(fits_from_json(json, "f.json")), json);
+}
+
+TEST(FitFile, MapsAndTheWinnerAreWrittenAndNotReadBack) {
+  FitFile file = make_example();
+  const nlohmann::ordered_json without = json_from_fits(file);
+  file.comparison.models = {"bounded"};
+  ModelOnMap model{file.fits, Score{0.1, 0.2}, {0.3, 0.4}, Score{0.5, 0.6}};
+  file.comparison.maps = {{"bricks", 0.25, {model}}, {"flat", std::nullopt, {ModelOnMap{}}}};
+  file.comparison.held_out_rms = {0.5};
+  file.comparison.winner = "bounded";
+  const nlohmann::ordered_json json = json_from_fits(file);
+  const nlohmann::ordered_json& bricks = json["maps"][0];
+  EXPECT_EQ(bricks["map"], "bricks");
+  EXPECT_EQ(bricks["mean_escape"], 0.25);
+  EXPECT_EQ(
+      bricks["models"]["bounded"].dump(),
+      R"({"parameters":{"F0":{"A":2.0,"B":3.0},"F1":{"A":2.0,"B":3.0}},"own":{"rms":0.1,"max_error":0.2},)"
+      R"("shared":{"rms":0.3,"max_error":0.4},"held_out":{"rms":0.5,"max_error":0.6}})");
+  EXPECT_TRUE(json["maps"][1]["mean_escape"].is_null());
+  EXPECT_TRUE(json["maps"][1]["models"]["bounded"]["parameters"].is_null());
+  EXPECT_EQ(json["held_out"].dump(), R"({"winner":"bounded","rms":{"bounded":0.5}})");
+  EXPECT_EQ(json_from_fits(fits_from_json(json, "f.json")), without);
 }
 
 TEST(FitFile, WhatIsMissingIsNamed) {

@@ -1,36 +1,38 @@
 // The exported GLSL, run: a compute shader on whatever OpenGL ES 3.1 the machine has without a window (Mesa's
-// software renderer will do), against the library in double.
+// software renderer will do), against the library in double, on the grid of shader_cases.h.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GLES3/gl31.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <vector>
 
-#include "model/shader_text.h"
+#include "model/shader_cases.h"
 
 namespace hemibake {
 namespace {
 
-constexpr int kSteps = 512;  // per axis: α along x, ρ along y
-
 constexpr const char* kHead = R"(#version 310 es
 precision highp float;
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 1) in;
 layout(std430, binding = 0) buffer Output { vec4 results[]; };
 )";
 
-// Both ends of α and ρ are among the inputs.
-constexpr const char* kMain = R"(
-void main() {
-  float ao = float(gl_GlobalInvocationID.x) / 511.0;
-  float albedo = float(gl_GlobalInvocationID.y) / 511.0;
-  vec3 rgb = multi_bounce_irradiance(ao, vec3(albedo, 0.5 * albedo, 1.0));
-  results[gl_GlobalInvocationID.y * 512u + gl_GlobalInvocationID.x] = vec4(rgb.xy, direct_irradiance(ao), bounce_ratio(ao));
+// Returns a shader that writes the three channels of each grid point.
+std::string source_of(const ShaderCase& shader) {
+  return kHead + shader_text(shader.model, Language::kGlsl, {"a test"}, shader.name) +
+         fmt::format(R"(
+void main() {{
+  uvec3 id = gl_GlobalInvocationID;
+  float x = float(id.x) / 32.0, y = float(id.y) / 32.0;
+  float albedo = id.z == 15u ? {} : float(id.z) / 16.0;
+  vec3 rgb = vec3(albedo, 0.5 * albedo, 1.0);
+  results[(id.x * {}u + id.y) * {}u + id.z] = vec4({}, y);
+}}
+)",
+                     kAlmostOne, kInputSteps, kAlbedoSteps, call_of(shader, "vec2(x, y)"));
 }
-)";
 
 // An OpenGL ES context without a window, gone with the object.
 class OffscreenContext {
@@ -65,7 +67,7 @@ class OffscreenContext {
   bool ready_ = false;
 };
 
-// Results of the whole grid, four a pixel; empty where the shader does not build (the log becomes a failure).
+// Results of the whole grid, four a point; empty where the shader does not build (the log becomes a failure).
 std::vector<float> run_shader(const std::string& source) {
   const char* text = source.c_str();
   const GLuint program = glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &text);
@@ -77,13 +79,13 @@ std::vector<float> run_shader(const std::string& source) {
     ADD_FAILURE() << log;
     return {};
   }
-  constexpr size_t kFloats = size_t{4} * kSteps * kSteps;
+  constexpr size_t kFloats = 4 * kGridSize;
   GLuint buffer = 0;
   glGenBuffers(1, &buffer);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer);
   glBufferData(GL_SHADER_STORAGE_BUFFER, kFloats * sizeof(float), nullptr, GL_STATIC_READ);
   glUseProgram(program);
-  glDispatchCompute(kSteps / 8, kSteps / 8, 1);
+  glDispatchCompute(kInputSteps, kInputSteps, kAlbedoSteps);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   const auto* mapped = static_cast<const float*>(
       glMapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, kFloats * sizeof(float), GL_MAP_READ_BIT));
@@ -94,36 +96,18 @@ std::vector<float> run_shader(const std::string& source) {
   return {mapped, mapped + kFloats};
 }
 
-template <class Model>
-void expect_equal_to_library(const Model& model) {
+TEST(GlslRun, EveryModelEqualsTheLibrary) {
   const OffscreenContext context;
   if (!context.ready()) GTEST_SKIP() << "no OpenGL ES 3.1 without a window here";
-  const std::vector<float> results =
-      run_shader(kHead + shader_text(model, Language::kGlsl, {"a test"}) + kMain);
-  ASSERT_FALSE(results.empty());
-  double largest = 0;
-  size_t at = 0;
-  for (int y = 0; y < kSteps; ++y) {
-    for (int x = 0; x < kSteps; ++x) {
-      const double ao = static_cast<double>(static_cast<float>(x) / 511.0F);
-      const double albedo = static_cast<double>(static_cast<float>(y) / 511.0F);
-      for (const double expected : {model.total(ao, albedo), model.total(ao, 0.5 * albedo), model.direct(ao),
-                                    model.bounce_ratio(ao)}) {
-        const double difference = std::abs(static_cast<double>(results[at++]) - expected);
-        largest = difference <= largest ? largest : difference;  // a NaN becomes the largest
-      }
-    }
+  for (const ShaderCase& shader : shader_cases()) {
+    const std::vector<float> results = run_shader(source_of(shader));
+    ASSERT_FALSE(results.empty());
+    const double largest = largest_difference(shader.model, results, 4);
+    fmt::print("{} {}: largest difference from the library {:.2e}\n",
+               reinterpret_cast<const char*>(glGetString(GL_RENDERER)), shader.name, largest);
+    EXPECT_LE(largest, tolerance_of(shader.model));
   }
-  fmt::print("{}: largest difference from the library: {:.2e}\n",
-             reinterpret_cast<const char*>(glGetString(GL_RENDERER)), largest);
-  // GLSL divides to 2.5 units in the last place and its pow is good to about 16: some 10⁻⁶.
-  EXPECT_LE(largest, 5e-6);
 }
-
-TEST(GlslRun, BoundedModelEqualsTheLibrary) {
-  expect_equal_to_library(BoundedModel{0.0697, 1, 0.5065, 0.8318});
-}
-TEST(GlslRun, PublishedModelEqualsTheLibrary) { expect_equal_to_library(GuardedModel{}); }
 
 }  // namespace
 }  // namespace hemibake

@@ -120,7 +120,11 @@ std::string describe_bake(const BakeOptions& options, const BakeResult& result) 
         result.choice->bounces > 0 ? fmt::format(" and {} bounces", result.choice->bounces) : "",
         result.reached->ao, result.reached->direct);
   if (!bake.visible_fraction.empty())
-    text += fmt::format("ao        mean {:.5f}\n", mean_of(bake.visible_fraction));
+    text += fmt::format("ao        mean {:.5f} (alpha: every direction of the sky counts the same)\n",
+                        mean_of(bake.visible_fraction));
+  if (!bake.visibility.empty())
+    text += fmt::format("visible   mean {:.5f} (V = E0/pi: weighted by the cosine, the AO of engines)\n",
+                        mean_of(bake.visibility));
   if (!bake.irradiance.empty()) {
     text += fmt::format("E0/pi     mean {:.5f}", mean_of(bake.irradiance[0]) / kPi);
     if (bake.irradiance.size() > 1) text += fmt::format(", E1/pi {:.5f}", mean_of(bake.irradiance[1]) / kPi);
@@ -146,6 +150,7 @@ nlohmann::ordered_json json_from_bake(const BakeResult& result, const Provenance
   json["peak_memory_bytes"] = peak_memory_bytes();
   json["planned_memory_bytes"] = result.planned_bytes;
   if (!result.planes.visible_fraction.empty()) json["mean_ao"] = mean_of(result.planes.visible_fraction);
+  if (!result.planes.visibility.empty()) json["mean_visibility"] = mean_of(result.planes.visibility);
   if (!result.planes.irradiance.empty()) {
     nlohmann::ordered_json means = nlohmann::ordered_json::array();
     for (const auto& plane : result.planes.irradiance) means.push_back(mean_of(plane) / kPi);

@@ -9,18 +9,24 @@
 
 namespace hemibake {
 
+struct ComparedMap {
+  std::string name;
+  std::string path;  // of its curves or its bake
+};
+
 struct ComparedCandidate {
   const Candidate* candidate;
   Comparison comparison;
 };
 
-// Returns {"models": [{"model", "formula", "parameters", "aicc", "errors": [{"curves", "own", "others"}]}]}.
-// paths: of the curves, in the order of the comparisons.
+// Returns {"models": [{"model", "formula", "parameters", "aicc", "errors": [{"map", "curves", "own",
+// "others"}]}]}. maps: in the order of the comparisons.
 nlohmann::json json_from_comparisons(std::span<const ComparedCandidate> candidates,
-                                     std::span<const std::string> paths);
+                                     std::span<const ComparedMap> maps);
 
-// Returns a table, a line for each candidate. paths: as above.
+// Returns a table of means, a line for each candidate, and tables of four maps each; at most 100 columns.
+// maps: as above.
 std::string text_from_comparisons(std::span<const ComparedCandidate> candidates,
-                                  std::span<const std::string> paths);
+                                  std::span<const ComparedMap> maps);
 
 }  // namespace hemibake

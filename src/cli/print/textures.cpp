@@ -1,0 +1,71 @@
+#include "cli/print/textures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace hemibake {
+namespace {
+
+const char* normal_y_name(const TextureSettings& settings) {
+  return *settings.normal_y == NormalY::kUp ? "up" : "down";
+}
+
+std::string describe_values(const WrittenTexture& texture) {
+  if (texture.channels.size() == 1) {
+    const ChannelRange& range = texture.channels[0];
+    return fmt::format("mean {:.4f}, {:.4f} to {:.4f}", range.mean, range.low, range.high);
+  }
+  std::string text = "mean";
+  for (const ChannelRange& range : texture.channels)
+    text += fmt::format(" {} {:.3f}", range.channel, range.mean);
+  return text;
+}
+
+}  // namespace
+
+std::string describe_textures(const std::vector<WrittenTexture>& textures, const TextureSettings& settings,
+                              const std::filesystem::path& folder) {
+  const TextureFormatInfo& format = texture_format_info(settings.coding.format);
+  std::string text =
+      fmt::format("{}: {} textures, {} bits a channel{}{}, linear, green {}\n", folder.string(),
+                  textures.size(), format.bits, format.is_float ? " (float)" : "",
+                  settings.coding.dither ? " (dithered)" : "", normal_y_name(settings));
+  size_t widest = 0;
+  for (const WrittenTexture& texture : textures)
+    widest = std::max(widest, texture.path.filename().string().size());
+  for (const WrittenTexture& texture : textures)
+    text += fmt::format("  {:{}}  {:10}  {}\n", texture.path.filename().string(), widest,
+                        texture_name(texture.kind), describe_values(texture));
+  return text;
+}
+
+nlohmann::ordered_json json_from_textures(const std::vector<WrittenTexture>& textures,
+                                          const TextureSettings& settings) {
+  const TextureFormatInfo& format = texture_format_info(settings.coding.format);
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const WrittenTexture& texture : textures) {
+    nlohmann::ordered_json channels = nlohmann::ordered_json::array(), low = channels, mean = channels,
+                           high = channels;
+    for (const ChannelRange& range : texture.channels) {
+      channels.push_back(range.channel);
+      low.push_back(range.low);
+      mean.push_back(range.mean);
+      high.push_back(range.high);
+    }
+    const bool vectors = texture.kind == TextureKind::kBent || texture.kind == TextureKind::kNormal;
+    list.push_back({{"path", texture.path.string()},
+                    {"texture", texture_name(texture.kind)},
+                    {"holds", texture.holds},
+                    {"channels", channels},
+                    {"bits", format.bits},
+                    {"low", low},
+                    {"mean", mean},
+                    {"high", high},
+                    {"normal_y", vectors ? nlohmann::ordered_json(normal_y_name(settings)) : nullptr}});
+  }
+  return list;
+}
+
+}  // namespace hemibake

@@ -1,0 +1,19 @@
+// Written textures as text and as JSON.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "textures/make_textures.h"
+
+namespace hemibake {
+
+// Returns a line for the folder and one per texture, at most 80 columns where names are short.
+std::string describe_textures(const std::vector<WrittenTexture>& textures, const TextureSettings& settings,
+                              const std::filesystem::path& folder);
+
+nlohmann::ordered_json json_from_textures(const std::vector<WrittenTexture>& textures,
+                                          const TextureSettings& settings);
+
+}  // namespace hemibake

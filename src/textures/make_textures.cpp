@@ -1,0 +1,78 @@
+#include "textures/make_textures.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "io/output_file.h"
+#include "textures/layers.h"
+#include "textures/light.h"
+#include "textures/planes.h"
+
+namespace hemibake {
+namespace {
+
+bool holds_vectors(TextureKind kind) { return kind == TextureKind::kBent || kind == TextureKind::kNormal; }
+
+bool holds_bounce(const TextureSettings& settings, TextureKind kind) {
+  const bool packed = kind == TextureKind::kOrm || kind == TextureKind::kMask;
+  return kind == TextureKind::kBounce || kind == TextureKind::kBounceMap ||
+         (packed && settings.occlusion == TextureKind::kBounce);
+}
+
+Provenance record_texture(const Provenance& of_bake, const Bake& bake, const TextureSettings& settings,
+                          TextureKind kind) {
+  Provenance p = of_bake;
+  p["texture"] = texture_name(kind);
+  p["holds"] = describe_texture(bake, settings, kind);
+  p["encoding"] = holds_vectors(kind) ? "linear, 0..1 for -1..1" : "linear, 0..1";
+  if (holds_vectors(kind)) p["green"] = *settings.normal_y == NormalY::kUp ? "up" : "down";
+  if (holds_bounce(settings, kind)) p["bounce_albedo"] = bounce_albedo_of(bake);
+  if (kind == TextureKind::kIrradiance) p["albedo"] = fmt::format("{:g}", fmt::join(settings.albedo, ","));
+  return p;
+}
+
+ChannelRange range_of(const Layer& layer) {
+  ChannelRange range{layer.channel, 1, 0, 0};
+  for (const float value : layer.values.values) {
+    range.low = std::min(range.low, static_cast<double>(value));
+    range.high = std::max(range.high, static_cast<double>(value));
+    range.mean += static_cast<double>(value);
+  }
+  range.mean /= static_cast<double>(layer.values.size());
+  return range;
+}
+
+}  // namespace
+
+std::vector<WrittenTexture> make_textures(const Bake& bake, const Provenance& provenance,
+                                          const TextureSettings& settings,
+                                          const std::filesystem::path& folder, const std::string& name) {
+  check_planes(bake, settings);
+  const PackedInputs packed = read_packed_inputs(settings, bake.width, bake.height);
+  const std::vector<std::filesystem::path> paths = texture_paths(settings, folder, name);
+  std::vector<std::unique_ptr<OutputFile>> files;
+  std::vector<WrittenTexture> written;
+  for (size_t t = 0; t < paths.size(); ++t) {
+    const TextureKind kind = settings.kinds[t];
+    const std::vector<Layer> layers = make_layers(bake, settings, kind, packed);
+    WrittenTexture texture{kind, paths[t], describe_texture(bake, settings, kind), {}};
+    std::vector<Plane> planes;
+    for (const Layer& layer : layers) {
+      planes.push_back({layer.channel, layer.values.values.data()});
+      texture.channels.push_back(range_of(layer));
+    }
+    files.push_back(std::make_unique<OutputFile>(paths[t]));
+    write_texture(*files.back(), bake.width, bake.height, planes, settings.coding,
+                  record_texture(provenance, bake, settings, kind));
+    files.back()->finish();
+    written.push_back(std::move(texture));
+  }
+  for (const auto& file : files) file->commit();
+  return written;
+}
+
+}  // namespace hemibake

@@ -1,0 +1,33 @@
+// Writes the textures of one bake.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/provenance.h"
+#include "textures/settings.h"
+#include "transport/baked_planes.h"
+
+namespace hemibake {
+
+struct ChannelRange {
+  std::string channel;                 // "Y", or "R", "G", "B", "A"
+  double low = 0, mean = 0, high = 0;  // as stored, 0..1
+};
+
+struct WrittenTexture {
+  TextureKind kind;
+  std::filesystem::path path;
+  std::string holds;  // in one line
+  std::vector<ChannelRange> channels;
+};
+
+// Writes every texture of the settings, all or none. bake: with the planes of bake_only_what_textures_need
+// (planes.h), or more. provenance: how the bake was made. settings: resolved. name: what the files' names
+// begin with. Throws InputError as check_planes and read_packed_inputs, and where a file cannot be written.
+std::vector<WrittenTexture> make_textures(const Bake& bake, const Provenance& provenance,
+                                          const TextureSettings& settings,
+                                          const std::filesystem::path& folder, const std::string& name);
+
+}  // namespace hemibake
