@@ -11,6 +11,7 @@
 #include <set>
 
 #include "bench/escape_forms.h"
+#include "bench/escape_textures.h"
 #include "core/parallel.h"
 
 namespace hemibake {
@@ -84,7 +85,10 @@ void print_forms(const std::vector<MapTruth>& maps) {
   std::vector<Score> scores(list.size());
   setvbuf(stdout, nullptr, _IONBF, 0);
   parallel_for(list.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) { scores[i] = score(list[i], maps, splits); fmt::print(stderr, "{} {:.4f} {:.4f}\n", list[i].formula, scores[i].mean, scores[i].held); }
+    for (size_t i = begin; i < end; ++i) {
+      scores[i] = score(list[i], maps, splits);
+      fmt::print(stderr, "{} {:.4f} {:.4f}\n", list[i].formula, scores[i].mean, scores[i].held);
+    }
   });
   fmt::print("\n| input | g | constants | all maps | held | worst map | own | ρ .2 | .5 | .8 | .9 | .95 |\n");
   fmt::print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
@@ -105,5 +109,6 @@ void print_forms(const std::vector<MapTruth>& maps) {
 int main(int argc, char** argv) {
   const int side = argc > 1 ? std::atoi(argv[1]) : 96, azimuths = argc > 2 ? std::atoi(argv[2]) : 32;
   const auto maps = hemibake::bake_truths(side, azimuths, argc > 3 ? argv[3] : "");
+  if (std::getenv("FORMS") == nullptr) hemibake::print_textures(maps), hemibake::print_albedo(maps);
   hemibake::print_forms(maps);
 }

@@ -28,7 +28,7 @@ double bounded_total(const TexelInput& t, double albedo, const double* c) {
   const double k0 = std::clamp(c[0], -1.0, 1.0), k1 = std::clamp(c[1], -1.0, 1.0);
   const double direct = bounded_direct_factor(t.escape, k0, k1);
   const double blocked = bounded_blocked_factor(t.escape, k0, k1);
-  const double escape = bounded_escape_share(direct, blocked, c[2], std::clamp(c[3], 0.0, 0.9999));
+  const double escape = bounded_escape_share(direct, c[2] * (1 - std::clamp(c[3], 0.0, 0.9999)), c[2]);
   return total_factor(direct, blocked, std::clamp(escape, 1e-6, 1.0), albedo);
 }
 
