@@ -41,66 +41,88 @@ std::vector<Split> split_kinds(const std::vector<MapTruth>& maps) {
   return splits;
 }
 
-// What a form leaves on all maps.
-struct Score {
-  std::vector<double> constants;
-  AlbedoErrors errors{};  // mean over the maps
-  double mean = 0, worst = 0, held = 0, spread = 0, held_worst = 0;
-  std::string worst_map;
-  double own = 0;  // fitted to each map itself
+// Mean and standard deviation over the splits.
+struct Held {
+  double mean = 0, spread = 0;
 };
 
-double mean_error(const Form& form, const std::vector<double>& constants, const Maps& maps) {
-  double sum = 0;
-  for (const MapTruth* map : maps) sum += mean_of(errors_of(form, constants, *map));
-  return sum / static_cast<double>(maps.size());
+Held held_of(const std::vector<double>& errors) {
+  Held held;
+  for (const double error : errors) held.mean += error / static_cast<double>(errors.size());
+  double squares = 0;
+  for (const double error : errors) squares += (error - held.mean) * (error - held.mean);
+  held.spread = std::sqrt(squares / static_cast<double>(errors.size() - 1));
+  return held;
 }
 
-Score score(const Form& form, const std::vector<MapTruth>& maps, const std::vector<Split>& splits) {
-  Maps all;
-  for (const MapTruth& map : maps) all.push_back(&map);
+// What a form leaves. `usual`: on materials at their recommended amplitudes only.
+struct Score {
+  std::vector<double> constants;  // fitted to all maps
+  AlbedoErrors errors{};          // mean over the maps
+  double usual = 0, worst = 0;
+  std::string worst_map;
+  double own = 0;  // fitted to each map itself
+  Held held, held_usual;
+};
+
+double mean_error(const Form& form, const std::vector<double>& constants, const Maps& maps, bool usual) {
+  double sum = 0, count = 0;
+  for (const MapTruth* map : maps) {
+    if (usual && !map->usual) continue;
+    sum += mean_of(errors_of(form, constants, *map)), ++count;
+  }
+  return sum / count;
+}
+
+Score score(const Form& form, const Maps& maps, const std::vector<Split>& splits) {
   Score result;
-  result.constants = fit(form, all);
-  for (const MapTruth& map : maps) {
-    const AlbedoErrors errors = errors_of(form, result.constants, map);
+  result.constants = fit(form, maps);
+  result.usual = mean_error(form, result.constants, maps, true);
+  for (const MapTruth* map : maps) {
+    const AlbedoErrors errors = errors_of(form, result.constants, *map);
     for (size_t a = 0; a < errors.size(); ++a)
       result.errors[a] += errors[a] / static_cast<double>(maps.size());
-    if (mean_of(errors) > result.worst) result.worst = mean_of(errors), result.worst_map = map.name;
-    const MapTruth* one[] = {&map};
-    result.own += mean_of(errors_of(form, fit(form, one), map)) / static_cast<double>(maps.size());
+    if (mean_of(errors) > result.worst) result.worst = mean_of(errors), result.worst_map = map->name;
+    result.own += mean_of(errors_of(form, fit(form, Maps{map}), *map)) / static_cast<double>(maps.size());
   }
-  result.mean = mean_of(result.errors);
-  double squares = 0;
+  std::vector<double> held, held_usual;
   for (const Split& split : splits) {
-    const double held = mean_error(form, fit(form, split.fitted), split.held);
-    result.held += held / kSplits, squares += held * held / kSplits;
+    const std::vector<double> constants = fit(form, split.fitted);
+    held.push_back(mean_error(form, constants, split.held, false));
+    held_usual.push_back(mean_error(form, constants, split.held, true));
   }
-  result.spread = std::sqrt(std::max(0.0, squares - result.held * result.held));
+  result.held = held_of(held), result.held_usual = held_of(held_usual);
   return result;
 }
 
-void print_forms(const std::vector<MapTruth>& maps) {
-  const std::vector<Split> splits = split_kinds(maps);
+void print_row(const Form& form, const Score& score) {
+  std::string constants;
+  for (const double c : score.constants)
+    constants += fmt::format("{}{:.3f}", constants.empty() ? "" : ", ", c);
+  fmt::print("| {} | {} | {} | {:.4f} | {:.4f} ± {:.4f} | {:.4f} | {:.4f} ± {:.4f} | {:.3f} {} | {:.4f} |",
+             form.inputs, form.formula, constants, mean_of(score.errors), score.held.mean, score.held.spread,
+             score.usual, score.held_usual.mean, score.held_usual.spread, score.worst, score.worst_map,
+             score.own);
+  for (const double error : score.errors) fmt::print(" {:.4f} |", error);
+  fmt::print("\n");
+}
+
+// Prints every form: fitted to all maps, held out, on the usual amplitudes, and fitted to each map itself.
+void print_forms(const std::vector<MapTruth>& truths) {
+  Maps maps;
+  for (const MapTruth& map : truths) maps.push_back(&map);
+  const std::vector<Split> splits = split_kinds(truths);
   const std::vector<Form> list = forms();
   std::vector<Score> scores(list.size());
-  setvbuf(stdout, nullptr, _IONBF, 0);
   parallel_for(list.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      scores[i] = score(list[i], maps, splits);
-      fmt::print(stderr, "{} {:.4f} {:.4f}\n", list[i].formula, scores[i].mean, scores[i].held);
-    }
+    for (size_t i = begin; i < end; ++i) scores[i] = score(list[i], maps, splits);
   });
-  fmt::print("\n| input | g | constants | all maps | held | worst map | own | ρ .2 | .5 | .8 | .9 | .95 |\n");
-  fmt::print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
-  for (size_t i = 0; i < list.size(); ++i) {
-    const Score& s = scores[i];
-    std::string constants;
-    for (const double c : s.constants) constants += fmt::format("{}{:.3f}", constants.empty() ? "" : ", ", c);
-    fmt::print("| {} | {} | {} | {:.4f} | {:.4f} ± {:.4f} | {:.3f} {} | {:.4f} |", list[i].inputs,
-               list[i].formula, constants, s.mean, s.held, s.spread, s.worst, s.worst_map, s.own);
-    for (const double error : s.errors) fmt::print(" {:.4f} |", error);
-    fmt::print("\n");
-  }
+  fmt::print(
+      "\n| input | g | constants | all maps | held | usual | usual, held | worst map | own | ρ .2 | .5 | .8 "
+      "| "
+      ".9 | .95 |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+  for (size_t i = 0; i < list.size(); ++i) print_row(list[i], scores[i]);
 }
 
 }  // namespace
@@ -109,6 +131,7 @@ void print_forms(const std::vector<MapTruth>& maps) {
 int main(int argc, char** argv) {
   const int side = argc > 1 ? std::atoi(argv[1]) : 96, azimuths = argc > 2 ? std::atoi(argv[2]) : 32;
   const auto maps = hemibake::bake_truths(side, azimuths, argc > 3 ? argv[3] : "");
-  if (std::getenv("FORMS") == nullptr) hemibake::print_textures(maps), hemibake::print_albedo(maps);
+  hemibake::print_textures(maps);
+  hemibake::print_albedo(maps);
   hemibake::print_forms(maps);
 }

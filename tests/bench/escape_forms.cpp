@@ -12,15 +12,12 @@ namespace {
 
 using Escape = std::function<double(const TexelInput&, const double*)>;
 
-double escape_total(double visibility, double escape, double albedo) {
-  const double kept = 1 - albedo;
-  return 1 - (1 - visibility) * kept / (kept + albedo * std::clamp(escape, 1e-6, 1.0));
-}
+constexpr double kTiny = 1e-6;  // where a fit on its way leaves the range of a form
 
 Form escape_form(std::string inputs, std::string formula, std::vector<double> start, Escape escape) {
   return {std::move(inputs), std::move(formula), std::move(start),
           [escape = std::move(escape)](const TexelInput& t, double albedo, const double* c) {
-            return escape_total(t.visibility, escape(t, c), albedo);
+            return escape_irradiance(t.visibility, std::clamp(escape(t, c), kTiny, 1.0), albedo);
           }};
 }
 
@@ -29,47 +26,47 @@ double bounded_total(const TexelInput& t, double albedo, const double* c) {
   const double direct = bounded_direct_factor(t.escape, k0, k1);
   const double blocked = bounded_blocked_factor(t.escape, k0, k1);
   const double escape = bounded_escape_share(direct, c[2] * (1 - std::clamp(c[3], 0.0, 0.9999)), c[2]);
-  return total_factor(direct, blocked, std::clamp(escape, 1e-6, 1.0), albedo);
+  return total_factor(direct, blocked, std::clamp(escape, kTiny, 1.0), albedo);
 }
 
-std::vector<Form> forms_of_visibility() {
+std::vector<Form> forms_without_escape_share() {
   std::vector<Form> list;
   list.push_back({"V", "E = V", {}, [](const TexelInput& t, double, const double*) { return t.visibility; }});
   list.push_back({"V", "cubic of Jimenez 2016", {}, [](const TexelInput& t, double albedo, const double*) {
-                    return std::max(t.visibility,
-                                    jimenez_cubic(t.visibility, albedo, kJimenezConstants.data()));
+                    const double cubic = jimenez_cubic(t.visibility, albedo, kJimenezConstants.data());
+                    return std::max(t.visibility, cubic);
                   }});
   list.push_back({"α", "bounded model", {0.42, 1, 0.46, 0.99}, bounded_total});
-  list.push_back(escape_form("V", "V", {}, [](const TexelInput& t, const double*) { return t.visibility; }));
-  list.push_back(escape_form("V", "a + bV", {0.03, 0.8}, [](const TexelInput& t, const double* c) {
-    return c[0] + c[1] * t.visibility;
-  }));
-  list.push_back(escape_form("V", "aV/(b + V)", {1.3, 0.5}, [](const TexelInput& t, const double* c) {
-    return c[0] * t.visibility / (c[1] + t.visibility);
-  }));
-  list.push_back(escape_form("V", "V(a + bV + cV²)", {0.8, 0, 0}, [](const TexelInput& t, const double* c) {
-    return t.visibility * (c[0] + t.visibility * (c[1] + t.visibility * c[2]));
-  }));
-  list.push_back(
-      escape_form("V, m", "(a + bm)V/(c + V)", {0.25, 1, 0.4}, [](const TexelInput& t, const double* c) {
-        return (c[0] + c[1] * t.map_escape) * t.visibility / (c[2] + t.visibility);
-      }));
-  list.push_back(escape_form("V, m", "a m^b V^c", {1, 0.6, 0.6}, [](const TexelInput& t, const double* c) {
-    return c[0] * std::pow(t.map_escape, c[1]) * std::pow(std::max(t.visibility, 1e-6), c[2]);
-  }));
-  list.push_back(escape_form("V, m", "a + bV + cm", {0, 0.6, 0.3}, [](const TexelInput& t, const double* c) {
-    return c[0] + c[1] * t.visibility + c[2] * t.map_escape;
-  }));
-  list.push_back(escape_form(
-      "V, n.z", "a + bV + c n.z", {0.07, 0.86, -0.1},
-      [](const TexelInput& t, const double* c) { return c[0] + c[1] * t.visibility + c[2] * t.normal_z; }));
-  list.push_back(escape_form("V, n.z", "V(a + b n.z)", {1, -0.1}, [](const TexelInput& t, const double* c) {
-    return t.visibility * (c[0] + c[1] * t.normal_z);
-  }));
-  list.push_back(
-      escape_form("V, n.z", "V(a + bV)/(c + n.z)", {1, 0, 0.5}, [](const TexelInput& t, const double* c) {
-        return t.visibility * (c[0] + c[1] * t.visibility) / (c[2] + t.normal_z);
-      }));
+  return list;
+}
+
+using T = const TexelInput&;
+using C = const double*;
+
+std::vector<Form> forms_of_visibility() {
+  std::vector<Form> list;
+  const auto add = [&](const char* inputs, const char* formula, std::vector<double> start, Escape escape) {
+    list.push_back(escape_form(inputs, formula, std::move(start), std::move(escape)));
+  };
+  add("V", "V", {}, [](T t, C) { return t.visibility; });
+  add("V", "a + bV", {0.03, 0.8}, [](T t, C c) { return c[0] + c[1] * t.visibility; });
+  add("V", "aV/(b + V)", {1.3, 0.5}, [](T t, C c) { return c[0] * t.visibility / (c[1] + t.visibility); });
+  add("V", "V(a + bV + cV²)", {0.8, 0, 0},
+      [](T t, C c) { return t.visibility * (c[0] + t.visibility * (c[1] + t.visibility * c[2])); });
+  add("V, n.z", "a + bV + c n.z", {0.07, 0.86, -0.1},
+      [](T t, C c) { return c[0] + c[1] * t.visibility + c[2] * t.normal_z; });
+  add("V, n.z", "V(a + b n.z)", {1, -0.1},
+      [](T t, C c) { return t.visibility * (c[0] + c[1] * t.normal_z); });
+  add("V, n.z", "V(1.3 − .6 n.z)", {}, [](T t, C) { return t.visibility * (1.3 - 0.6 * t.normal_z); });
+  add("V, m", "V(1 + m)/(1 + V)", {},
+      [](T t, C) { return t.visibility * (1 + t.map_escape) / (1 + t.visibility); });
+  add("V, m", "(a + bm)V/(c + V)", {0.25, 1, 0.4},
+      [](T t, C c) { return (c[0] + c[1] * t.map_escape) * t.visibility / (c[2] + t.visibility); });
+  add("V, m", "a m^b V^c", {1, 0.6, 0.6}, [](T t, C c) {
+    return c[0] * std::pow(t.map_escape, c[1]) * std::pow(std::max(t.visibility, kTiny), c[2]);
+  });
+  add("V, n.z, m", "V(a + bm + c n.z)", {1, 0.3, -0.5},
+      [](T t, C c) { return t.visibility * (c[0] + c[1] * t.map_escape + c[2] * t.normal_z); });
   return list;
 }
 
@@ -78,46 +75,30 @@ std::vector<Form> forms_of_both() {
   const auto add = [&](const char* inputs, const char* formula, std::vector<double> start, Escape escape) {
     list.push_back(escape_form(inputs, formula, std::move(start), std::move(escape)));
   };
-  using T = const TexelInput&;
-  using C = const double*;
   add("V, α", "α", {}, [](T t, C) { return t.escape; });
   add("V, α", "√(αV)", {}, [](T t, C) { return std::sqrt(t.escape * t.visibility); });
-  add("V, α", "α/(½ + α/2)", {}, [](T t, C) { return t.escape / (0.5 + 0.5 * t.escape); });
   add("V, α", "a + bα", {0, 1}, [](T t, C c) { return c[0] + c[1] * t.escape; });
   add("V, α", "a + bα + cV", {0, 1, 0},
       [](T t, C c) { return c[0] + c[1] * t.escape + c[2] * t.visibility; });
   add("V, α", "aα/(b + α)", {2, 1}, [](T t, C c) { return c[0] * t.escape / (c[1] + t.escape); });
-  add("V, α", "α(a + bα)", {1, 0}, [](T t, C c) { return t.escape * (c[0] + c[1] * t.escape); });
   add("V, α", "α(a + bα + cV)", {1, 0, 0},
       [](T t, C c) { return t.escape * (c[0] + c[1] * t.escape + c[2] * t.visibility); });
   add("V, α", "aα + bα²/V", {1, 0},
-      [](T t, C c) { return c[0] * t.escape + c[1] * t.escape * t.escape / std::max(t.visibility, 1e-6); });
-  add("V, α", "a α^b V^c", {1, 1, 0}, [](T t, C c) {
-    return c[0] * std::pow(std::max(t.escape, 1e-6), c[1]) * std::pow(std::max(t.visibility, 1e-6), c[2]);
-  });
-  add("V, α, n.z", "α(a + b n.z)", {1, 0}, [](T t, C c) { return t.escape * (c[0] + c[1] * t.normal_z); });
+      [](T t, C c) { return c[0] * t.escape + c[1] * t.escape * t.escape / std::max(t.visibility, kTiny); });
   add("V, α, n.z", "α(a + b n.z + cα)", {1, 0, 0},
       [](T t, C c) { return t.escape * (c[0] + c[1] * t.normal_z + c[2] * t.escape); });
-  add("V, α, n.z", "α(a + b n.z)/(c + α)", {2, 0, 1},
-      [](T t, C c) { return t.escape * (c[0] + c[1] * t.normal_z) / (c[2] + t.escape); });
   add("V, α, m", "α(1 + m − α)", {}, [](T t, C) { return t.escape * (1 + t.map_escape - t.escape); });
-  add("V, α, m", "α(1 + m)/(½ + α)", {},
-      [](T t, C) { return t.escape * (1 + t.map_escape) / (0.5 + t.escape); });
-  add("V, α, m", "2αm/(α + m)", {},
-      [](T t, C) { return 2 * t.escape * t.map_escape / (t.escape + t.map_escape); });
-  add("V, α, m", "√(αm)", {}, [](T t, C) { return std::sqrt(t.escape * t.map_escape); });
+  add("V, α, m", "α(1 + m)/(1 + α)", {},
+      [](T t, C) { return t.escape * (1 + t.map_escape) / (1 + t.escape); });
+  add("V, α, m", "α(1 + 2m)/(1 + 2α)", {},
+      [](T t, C) { return t.escape * (1 + 2 * t.map_escape) / (1 + 2 * t.escape); });
   add("V, α, m", "α(a + bm − cα)", {0.85, 1.12, 0.86},
       [](T t, C c) { return t.escape * (c[0] + c[1] * t.map_escape - c[2] * t.escape); });
   add("V, α, m", "α(a + bm)/(c + α)", {1, 1, 0.7},
       [](T t, C c) { return t.escape * (c[0] + c[1] * t.map_escape) / (c[2] + t.escape); });
-  add("V, α, m", "α(a + bm)", {0.5, 0.7}, [](T t, C c) { return t.escape * (c[0] + c[1] * t.map_escape); });
-  add("V, α, m", "(a + bm)α/(cm + α)", {0.5, 1, 1},
-      [](T t, C c) { return t.escape * (c[0] + c[1] * t.map_escape) / (c[2] * t.map_escape + t.escape); });
   add("V, α, m", "a m^b α^c", {1, 0.5, 0.7}, [](T t, C c) {
-    return c[0] * std::pow(t.map_escape, c[1]) * std::pow(std::max(t.escape, 1e-6), c[2]);
+    return c[0] * std::pow(t.map_escape, c[1]) * std::pow(std::max(t.escape, kTiny), c[2]);
   });
-  add("V, α, m", "a + bα + cm", {0, 0.7, 0.3},
-      [](T t, C c) { return c[0] + c[1] * t.escape + c[2] * t.map_escape; });
   return list;
 }
 
@@ -187,8 +168,9 @@ void normal_equations(const Form& form, const Eigen::VectorXd& c, const std::vec
 }  // namespace
 
 std::vector<Form> forms() {
-  std::vector<Form> list = forms_of_visibility();
-  for (Form& form : forms_of_both()) list.push_back(std::move(form));
+  std::vector<Form> list = forms_without_escape_share();
+  for (auto* more : {forms_of_visibility, forms_of_both})
+    for (Form& form : more()) list.push_back(std::move(form));
   return list;
 }
 

@@ -27,6 +27,7 @@ struct MapPlan {
   std::filesystem::path file = {}, normal_map = {};
   bool painted = false;
 
+  bool usual() const { return seed == 1 && kind != "groove" && kind != "bowl"; }
   std::string name() const {
     return fmt::format("{}{} {:g} m{}", file.empty() ? "" : "file ", kind, amplitude_m,
                        normal_map.empty() ? "" : ", its normal map");
@@ -154,8 +155,7 @@ MapTruth bake_truth(const MapPlan& plan, int side, int azimuths) {
   const BakeResult baked = bake(map, settings, Context{});
   const LightTransport& transport = *baked.transport;
   MapTruth truth;
-  truth.name = plan.name();
-  truth.kind = plan.kind;
+  truth.name = plan.name(), truth.kind = plan.kind, truth.usual = plan.usual();
   truth.height_range_texels = height_range_m(map.surface) / map.surface.texel_size_m;
   truth.visibility = transport.direct_over_pi;
   truth.escape = baked.planes.visible_fraction;
@@ -191,7 +191,7 @@ bool take_kept(const MapPlan& plan, const std::filesystem::path& path, MapTruth&
   int width = 0, height = 0;
   if (!(file >> width >> height >> truth.height_range_texels)) return false;
   file.ignore();
-  truth.name = plan.name(), truth.kind = plan.kind;
+  truth.name = plan.name(), truth.kind = plan.kind, truth.usual = plan.usual();
   if (plan.painted)
     for (const std::string pattern : kPatterns) truth.painted.push_back({pattern, {}, {}});
   visit_planes(truth, [&](Grid<float>& plane) {

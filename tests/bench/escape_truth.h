@@ -23,6 +23,7 @@ struct PaintedTruth {
 
 struct MapTruth {
   std::string name, kind;
+  bool usual = false;  // a material at its recommended amplitude
   double height_range_texels = 0;
   Grid<float> visibility, escape, normal_z;  // V, α, n.z
   std::array<Grid<float>, kTruthAlbedos.size()> irradiance;
