@@ -9,10 +9,12 @@
 #include "bake/record.h"
 #include "bake/replay.h"
 #include "bake/write.h"
+#include "cli/batch.h"
 #include "cli/options/bake_options.h"
 #include "cli/print/bake.h"
 #include "cli/print/replay.h"
 #include "cli/print/warnings.h"
+#include "cli/result_folder.h"
 #include "core/error.h"
 #include "io/file_context.h"
 #include "io/output_file.h"
@@ -21,6 +23,7 @@ namespace hemibake {
 namespace {
 
 struct BakeCommandOptions : BakeOptions {
+  std::vector<std::string> maps;
   std::filesystem::path output;
   std::vector<int> texel;
   bool dry_run = false;
@@ -38,7 +41,15 @@ void check_outputs(const BakeCommandOptions& options) {
   if (!options.links.empty()) check_bake_output(options.map, options.links, {".h5", ".hdf5"});
 }
 
-int run_bake(BakeCommandOptions& options, const Invocation& invocation) {
+// Replays a texel or says memory and work, without a bake.
+MapOutcome say_beforehand(const BakeCommandOptions& options, const PreparedBake& prepared) {
+  if (options.texel.empty()) return {json_from_plan(prepared.plan), describe_plan(prepared), "", 0};
+  const Replay replay = with_file_context(
+      options.map.map, [&] { return replay_texel(prepared, options.texel[0], options.texel[1]); });
+  return {json_from_replay(replay), describe_replay(replay), "", 0};
+}
+
+MapOutcome bake_one(BakeCommandOptions options, const Invocation& invocation) {
   resolve(options, invocation);
   if (options.writes()) check_outputs(options);
   options.bake.spill_folder = options.output.parent_path();
@@ -47,22 +58,38 @@ int run_bake(BakeCommandOptions& options, const Invocation& invocation) {
     return prepare_bake(map, options.bake,
                         options.writes() ? MemoryLimit::kEnforced : MemoryLimit::kPlannedOnly);
   });
-  if (!options.texel.empty()) {
-    const Replay replay = with_file_context(
-        options.map.map, [&] { return replay_texel(prepared, options.texel[0], options.texel[1]); });
-    invocation.print(json_from_replay(replay), describe_replay(replay));
-    return 0;
-  }
-  if (options.dry_run) {
-    invocation.print(json_from_plan(prepared.plan), describe_plan(prepared));
-    return 0;
-  }
+  if (!options.writes()) return say_beforehand(options, prepared);
   const BakeResult result = bake(prepared);
   const Provenance provenance = record_of(options.map, map, result, invocation.context.command);
   write_results(result, provenance, options.output, options.links);
   print_warnings(options.map.map.string(), warnings_of(result));
-  invocation.print(json_from_bake(result, provenance), describe_bake(options, result));
-  return 0;
+  nlohmann::ordered_json json = json_from_bake(result, provenance);
+  json["output"] = options.output.string();
+  return {json, describe_bake(options, result), line_of_bake(options.map, result, options.output), 0};
+}
+
+int bake_many(const BakeCommandOptions& options, const Invocation& invocation) {
+  refuse_settings_of_one_map(invocation, {"normals", "links", "texel", "dry-run"});
+  if (options.output.empty()) throw InputError("--output: missing, expected -o DIR for several maps");
+  const std::vector<std::filesystem::path> maps = find_maps(options.maps);
+  const ResultFolder folder(options.output);
+  return run_over_maps(maps, invocation, [&](const std::filesystem::path& map) -> MapOutcome {
+    BakeCommandOptions of_map = options;
+    of_map.map.map = map;
+    of_map.output = options.output / (map.stem().string() + ".exr");
+    BakeCommandOptions resolved = of_map;
+    resolve(resolved, invocation);
+    if (is_done(of_map.output, resolved.map, resolved.bake)) return skipped(map, of_map.output);
+    return bake_one(of_map, invocation);
+  });
+}
+
+int run_bake(BakeCommandOptions& options, const Invocation& invocation) {
+  if (names_many(options.maps)) return bake_many(options, invocation);
+  options.map.map = options.maps[0];
+  const MapOutcome outcome = bake_one(options, invocation);
+  invocation.print(outcome.json, outcome.text);
+  return outcome.exit_code;
 }
 
 }  // namespace
@@ -71,9 +98,12 @@ CommandSetup setup_bake() {
   auto options = std::make_shared<BakeCommandOptions>();
   CommandSetup setup;
   setup.fields = bake_options(*options);
+  take_several_maps(setup.fields, options->maps);
   append(
       setup.fields,
-      {in_group(shown_as(output_option(options->output, "the bake to write, EXR"), "BAKE.exr"), "Output"),
+      {in_group(shown_as(output_option(options->output, "the bake to write, EXR; for several maps a folder"),
+                         "BAKE.exr|DIR"),
+                "Output"),
        in_group(shown_as(option("texel", whole_numbers(options->texel, 2, 0, int{kMaxTexels - 1}),
                                 "print the rays, hits and links of one texel instead, counted from 0"),
                          "X,Y"),

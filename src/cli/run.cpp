@@ -8,6 +8,7 @@
 #include "bake/bake.h"
 #include "bake/record.h"
 #include "bake/write.h"
+#include "cli/batch.h"
 #include "cli/file_checks.h"
 #include "cli/options/bake_options.h"
 #include "cli/print/bake.h"
@@ -31,6 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunOptions : BakeOptions {
+  std::vector<std::string> maps;
   fs::path folder;
   int bins = 100;
 };
@@ -73,7 +75,7 @@ void check_outputs(const RunOptions& options) {
   if (!options.links.empty()) check_bake_output(options.map, options.links, {".h5", ".hdf5"});
 }
 
-int run_all(RunOptions& options, const Invocation& invocation) {
+MapOutcome run_one(RunOptions options, const Invocation& invocation) {
   resolve(options, invocation);
   const ResultFolder folder(options.folder);
   check_outputs(options);
@@ -100,9 +102,40 @@ int run_all(RunOptions& options, const Invocation& invocation) {
     json["fits"].erase("provenance");
   }
   json["check"] = json_from_checks(checks);
-  invocation.print(
-      json, describe_bake(options, result) + (fits ? describe_fits(*fits) : "") + table_from_checks(checks));
-  return fits && all_passed(checks) ? 0 : 1;
+  json["output"] = options.folder.string();
+  return {json,
+          describe_bake(options, result) + (fits ? describe_fits(*fits) : "") + table_from_checks(checks),
+          line_of_bake(options.map, result, options.folder), fits && all_passed(checks) ? 0 : 1};
+}
+
+// Returns whether the results of an earlier run are there and those of this one would be the same.
+bool was_run(const RunOptions& options) {
+  std::error_code not_there;
+  return std::filesystem::exists(options.folder / "check.json", not_there) &&
+         is_done(options.folder / "bake.exr", options.map, options.bake);
+}
+
+int run_many(const RunOptions& options, const Invocation& invocation) {
+  refuse_settings_of_one_map(invocation, {"normals", "links"});
+  const std::vector<fs::path> maps = find_maps(options.maps);
+  const ResultFolder folder(options.folder);
+  return run_over_maps(maps, invocation, [&](const fs::path& map) -> MapOutcome {
+    RunOptions of_map = options;
+    of_map.map.map = map;
+    of_map.folder = options.folder / map.stem();
+    RunOptions resolved = of_map;
+    resolve(resolved, invocation);
+    if (was_run(resolved)) return skipped(map, of_map.folder);
+    return run_one(of_map, invocation);
+  });
+}
+
+int run_all(RunOptions& options, const Invocation& invocation) {
+  if (names_many(options.maps)) return run_many(options, invocation);
+  options.map.map = options.maps[0];
+  const MapOutcome outcome = run_one(options, invocation);
+  invocation.print(outcome.json, outcome.text);
+  return outcome.exit_code;
 }
 
 }  // namespace
@@ -111,6 +144,7 @@ CommandSetup setup_run() {
   auto options = std::make_shared<RunOptions>();
   CommandSetup setup;
   setup.fields = bake_options(*options);
+  take_several_maps(setup.fields, options->maps);
   append(setup.fields, {in_group(shown_as(required(output_option(options->folder,
                                                                  "folder for bake.exr, curves.csv, fit.json "
                                                                  "and check.json; made if new")),

@@ -100,6 +100,16 @@ std::vector<std::string> warnings_of(const BakeResult& result) {
   return warnings;
 }
 
+std::string line_of_bake(const MapSettings& map, const BakeResult& result,
+                         const std::filesystem::path& output) {
+  const Bake& bake = result.planes;
+  std::string text = fmt::format("{}: {}x{}", map.map.string(), bake.width, bake.height);
+  if (!bake.visible_fraction.empty()) text += fmt::format(", alpha {:.4f}", mean_of(bake.visible_fraction));
+  if (!bake.visibility.empty()) text += fmt::format(", V {:.4f}", mean_of(bake.visibility));
+  if (bake.irradiance.size() > 1) text += fmt::format(", E1/pi {:.4f}", mean_of(bake.irradiance[1]) / kPi);
+  return text + fmt::format(", {:.1f} s: {}", result.seconds, output.string());
+}
+
 std::string describe_bake(const BakeOptions& options, const BakeResult& result) {
   const Bake& bake = result.planes;
   const MapSettings& map = options.map;

@@ -14,6 +14,10 @@ namespace hemibake {
 // Names what a person should know before trusting the bake: texels left short and the like.
 std::vector<std::string> warnings_of(const BakeResult& result);
 
+// Returns one line about a bake among many, without a line break.
+std::string line_of_bake(const MapSettings& map, const BakeResult& result,
+                         const std::filesystem::path& output);
+
 std::string describe_bake(const BakeOptions& options, const BakeResult& result);
 // provenance: as record_of (bake/record.h).
 nlohmann::ordered_json json_from_bake(const BakeResult& result, const Provenance& provenance);

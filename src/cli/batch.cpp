@@ -1,0 +1,165 @@
+#include "cli/batch.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <iterator>
+#include <map>
+
+#include "bake/load.h"
+#include "bake/record.h"
+#include "core/error.h"
+#include "io/image_io.h"
+#include "io/output_file.h"
+
+namespace hemibake {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array kImageExtensions = {".png", ".tif", ".tiff", ".exr",  ".hdr",
+                                         ".bmp", ".tga", ".jpg",  ".jpeg", ".pgm"};
+
+bool is_folder(const fs::path& path) {
+  std::error_code not_there;
+  return fs::is_directory(path, not_there);
+}
+
+// Returns whether an image is a result of this program, as they lie beside maps.
+bool is_bake(const fs::path& path) {
+  if (lower_case_extension(path) != ".exr") return false;
+  try {
+    const ImageHeader header = read_image_header(path);
+    return header.provenance.is_object() && header.provenance.contains("tracer");
+  } catch (const InputError&) {
+    return false;  // is named as a bad map
+  }
+}
+
+// Returns the images of a folder that are no bakes, by name.
+std::vector<fs::path> images_in(const fs::path& folder) {
+  std::vector<fs::path> images;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path& path = entry->path();
+    std::error_code not_there;
+    const bool is_image =
+        entry->is_regular_file(not_there) && path.filename().string()[0] != '.' &&
+        std::ranges::find(kImageExtensions, lower_case_extension(path)) != kImageExtensions.end();
+    if (is_image && !is_bake(path)) images.push_back(path);
+  }
+  if (error)
+    throw InputError(fmt::format("{}: could not read the folder: {}", folder.string(), error.message()));
+  std::ranges::sort(images);
+  if (images.empty())
+    throw InputError(folder.string() + ": a folder without images, expected height maps in it");
+  return images;
+}
+
+std::string one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return c < ' '; }, ' ');
+  return text;
+}
+
+}  // namespace
+
+void take_several_maps(std::vector<Field>& fields, std::vector<std::string>& maps) {
+  const auto field = std::ranges::find(fields, "MAP", &Field::name);
+  field->value = texts(maps);
+  field->help =
+      "height map: PNG, TIFF, EXR or anything else OpenImageIO reads; several, or a folder of them: each is "
+      "done, bad ones are named, done ones skipped";
+}
+
+MapOutcome skipped(const fs::path& map, const fs::path& output) {
+  return {{{"input", map.filename().string()}, {"output", output.string()}, {"skipped", true}},
+          "",
+          fmt::format("{}: done before: {}", map.string(), output.string()),
+          0};
+}
+
+bool names_many(const std::vector<std::string>& arguments) {
+  return arguments.size() > 1 || is_folder(arguments[0]);
+}
+
+std::vector<fs::path> find_maps(const std::vector<std::string>& arguments) {
+  std::vector<fs::path> maps;
+  for (const fs::path argument : arguments) {
+    if (!is_folder(argument))
+      maps.push_back(argument);
+    else
+      std::ranges::copy(images_in(argument), std::back_inserter(maps));
+  }
+  std::map<std::string, fs::path> by_name;
+  for (const fs::path& path : maps) {
+    const auto [known, is_new] = by_name.emplace(path.stem().string(), path);
+    if (!is_new)
+      throw InputError(fmt::format("{}: has the name of {}, expected maps of different names", path.string(),
+                                   known->second.string()));
+  }
+  return maps;
+}
+
+void refuse_settings_of_one_map(const Invocation& invocation, std::initializer_list<const char*> names) {
+  for (const char* name : names)
+    if (invocation.given(name))
+      throw InputError(fmt::format("--{}: is of one map, expected one map with it", name));
+}
+
+bool is_done(const fs::path& bake, const MapSettings& map, const BakeSettings& settings) {
+  std::error_code not_there;
+  if (!fs::is_regular_file(bake, not_there)) return false;
+  Provenance made;
+  try {
+    made = read_image_header(bake).provenance;
+  } catch (const InputError&) {
+    return false;
+  }
+  if (!made.is_object()) return false;
+  Provenance wanted = make_provenance("");
+  record_map(map, hash_files(map), wanted);
+  BakeSettings copy = settings;
+  record_fields(bake_fields(copy), wanted);
+  for (const char* elsewhere : {"command", "input_path", "normals_path"}) wanted.erase(elsewhere);
+  if (settings.target_error)
+    for (const char* chosen : {"rays", "bounces"}) wanted.erase(chosen);
+  return std::ranges::all_of(wanted.items(), [&](const auto& item) {
+    const auto found = made.find(item.key());
+    return found != made.end() && *found == item.value();
+  });
+}
+
+int run_over_maps(const std::vector<fs::path>& maps, const Invocation& invocation,
+                  const std::function<MapOutcome(const fs::path& map)>& run_one) {
+  nlohmann::ordered_json done = nlohmann::ordered_json::array();
+  std::vector<std::string> bad;
+  int exit_code = 0;
+  const auto name_bad = [&](const fs::path& map, const std::string& message) {
+    fmt::print(stderr, "hemibake: {}\n", one_line(message));
+    bad.push_back(map.string());
+  };
+  for (size_t i = 0; i < maps.size(); ++i) {
+    try {
+      MapOutcome outcome = run_one(maps[i]);
+      exit_code = std::max(exit_code, outcome.exit_code);
+      if (!invocation.json)
+        invocation.print({}, fmt::format("[{}/{}] {}\n", i + 1, maps.size(), outcome.line));
+      done.push_back(std::move(outcome.json));
+    } catch (const SettingError& error) {
+      name_bad(maps[i], error.with_prefix("--"));
+    } catch (const InputError& error) {
+      name_bad(maps[i], error.what());
+    }
+  }
+  if (!bad.empty())
+    fmt::print(stderr, "hemibake: {} of {} maps were bad: {}\n", bad.size(), maps.size(),
+               one_line(fmt::format("{}", fmt::join(bad, ", "))));
+  if (invocation.json) invocation.print({{"maps", done}, {"bad", bad}}, "");
+  return bad.empty() ? exit_code : 2;
+}
+
+}  // namespace hemibake
