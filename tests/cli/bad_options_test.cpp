@@ -107,7 +107,7 @@ TEST_F(BadOptions, UnknownMissingAndDouble) {
   expect_refusal("bake map.png -o bake.exr --size ''",
                  StartsWith("--size: is followed by an empty argument"));
   expect_refusal("bake map.png -o bake.exr --albedo 1", HasSubstr("--albedo"));
-  expect_refusal("bake map.png other.png -o bake.exr", HasSubstr("other.png"));
+  expect_refusal("bake map.png other.png -o bake.exr", HasSubstr("--output: bake.exr is one file, expected a folder"));
   expect_refusal("bake map.png -o bake.exr --size 1 --size 2", HasSubstr("--size"));
   expect_refusal("bake map.png -o bake.exr --size", HasSubstr("--size"));
   expect_refusal("bake -o bake.exr", HasSubstr("MAP"));
