@@ -18,7 +18,6 @@
 #include "core/error.h"
 #include "io/file_context.h"
 #include "io/output_file.h"
-#include "io/output_file.h"
 
 namespace hemibake {
 namespace {
@@ -73,8 +72,8 @@ int bake_many(const BakeCommandOptions& options, const Invocation& invocation) {
   refuse_settings_of_one_map(invocation, {"normals", "links", "texel", "dry-run"});
   if (options.output.empty()) throw InputError("--output: missing, expected -o DIR for several maps");
   if (lower_case_extension(options.output) == ".exr")
-    throw InputError(fmt::format("--output: {} is one file, expected a folder for several maps",
-                                 options.output.string()));
+    throw InputError(
+        fmt::format("--output: {} is one file, expected a folder for several maps", options.output.string()));
   const std::vector<std::filesystem::path> maps = find_maps(options.maps);
   const ResultFolder folder(options.output);
   return run_over_maps(maps, invocation, [&](const std::filesystem::path& map) -> MapOutcome {
