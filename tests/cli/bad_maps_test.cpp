@@ -42,7 +42,8 @@ class BadMaps : public CliTest {
 
 TEST_F(BadMaps, AreNamed) {
   expect_bad_map("none.png", "none.png: No such file or directory, expected an image");
-  expect_bad_map(".", ".: is a folder, expected an image");
+  expect_refusal("bake . -o bake.exr",
+                 testing::Eq("--output: bake.exr is one file, expected a folder for several maps"));
   write_bytes(folder_ / "empty.png", "");
   expect_bad_map("empty.png", "empty.png: is empty, expected an image");
   write_bytes(folder_ / "text.png", "This is a letter and no picture.\n\nIt has several lines.\n");
