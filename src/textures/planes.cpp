@@ -28,7 +28,7 @@ Needs needs_of(const TextureSettings& textures) {
     const bool with_normal = bent && textures.bent_length == BentLength::kVisibility;
     needs.bent |= bent;
     needs.bounce_plane |= bounce;
-    needs.bounces |= bounce || (irradiance && std::ranges::max(textures.albedo) > 0);
+    needs.bounces |= irradiance && std::ranges::max(textures.albedo) > 0;
     needs.normal |= kind == TextureKind::kNormal || with_normal;
     needs.ao |= kind == TextureKind::kAo || (bent && textures.bent_length == BentLength::kAo);
     needs.visibility |= kind == TextureKind::kVisibility || bounce || irradiance || with_normal;
@@ -55,8 +55,10 @@ void expect_light(const Bake& bake, const Needs& needs) {
   } else if (needs.visibility) {
     expect_plane(bake, bake.visibility, "visibility");
   }
-  if (needs.bounce_plane && !bake.bounce.empty()) expect_plane(bake, bake.bounce, "bounce");
-  if (!needs.bounces || (needs.bounce_plane && !bake.bounce.empty())) return;
+  const bool has_bounce_plane = !bake.bounce.empty();
+  if (needs.bounce_plane && has_bounce_plane) expect_plane(bake, bake.bounce, "bounce");
+  const bool sums_bounces = needs.bounces || (needs.bounce_plane && !has_bounce_plane);
+  if (!sums_bounces) return;
   if (bake.irradiance.size() < 2)
     throw InputError("has no bounces, expected channel irradiance.01 for the textures asked for");
   for (const Grid<float>& plane : bake.irradiance) expect_plane(bake, plane, "irradiance");
@@ -82,7 +84,7 @@ void bake_only_what_textures_need(const TextureSettings& textures, BakeSettings&
   const Needs needs = needs_of(textures);
   bake.outputs.clear();
   if (needs.visibility || needs.ao) bake.outputs.push_back(BakeOutput::kAo);  // comes with V
-  if (needs.bounces) bake.outputs.push_back(BakeOutput::kIrradiance);
+  if (needs.bounces || needs.bounce_plane) bake.outputs.push_back(BakeOutput::kIrradiance);
   if (needs.bent) bake.outputs.push_back(BakeOutput::kBent);
   if (needs.normal) bake.outputs.push_back(BakeOutput::kNormal);
   if (!needs.bounce_plane) bake.bounce_albedo.reset();

@@ -176,6 +176,10 @@ TEST_F(Textures, RefusesWhatMakesNoSense) {
   expect_refusal("textures b.exr -o t --rays 8", HasSubstr("rays"));
   expect_refusal("textures . -o t", HasSubstr("."));
   expect_refusal("textures none.png -o t", HasSubstr("none.png"));
+  // Its plane `bounce` is converged, but there are no bounces to sum at another albedo.
+  run_well("bake map.exr -o zero.exr --links l.h5 --bounces 0 --rays 4");
+  run_well("textures zero.exr -o z --maps bounce");
+  expect_refusal("textures zero.exr -o t --maps bounce,irradiance", HasSubstr("has no bounces"));
   Bake mixed = bake_;
   std::fill(mixed.visible_fraction.values.begin(), mixed.visible_fraction.values.end(), 0.05f);
   write_bake(folder_ / "mixed.exr", mixed, read_bake(folder_ / "b.exr").provenance);
