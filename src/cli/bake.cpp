@@ -49,8 +49,8 @@ MapOutcome say_beforehand(const BakeCommandOptions& options, const PreparedBake&
   return {json_from_replay(replay), describe_replay(replay), "", 0};
 }
 
+// Bakes one map. options: resolved.
 MapOutcome bake_one(BakeCommandOptions options, const Invocation& invocation) {
-  resolve(options, invocation);
   if (options.writes()) check_outputs(options);
   options.bake.spill_folder = options.output.parent_path();
   const LoadedMap map = load_map(options.map, options.bake.normal_length);
@@ -80,9 +80,8 @@ int bake_many(const BakeCommandOptions& options, const Invocation& invocation) {
     BakeCommandOptions of_map = options;
     of_map.map.map = map;
     of_map.output = options.output / (map.stem().string() + ".exr");
-    BakeCommandOptions resolved = of_map;
-    resolve(resolved, invocation);
-    if (is_done(of_map.output, resolved.map, resolved.bake)) return skipped(map, of_map.output);
+    resolve(of_map, invocation);
+    if (is_done(of_map.output, of_map.map, of_map.bake)) return skipped(map, of_map.output);
     return bake_one(of_map, invocation);
   });
 }
@@ -90,6 +89,7 @@ int bake_many(const BakeCommandOptions& options, const Invocation& invocation) {
 int run_bake(BakeCommandOptions& options, const Invocation& invocation) {
   if (names_many(options.maps)) return bake_many(options, invocation);
   options.map.map = options.maps[0];
+  resolve(options, invocation);
   const MapOutcome outcome = bake_one(options, invocation);
   invocation.print(outcome.json, outcome.text);
   return outcome.exit_code;

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <iterator>
 #include <map>
 
 #include "bake/load.h"
 #include "bake/record.h"
+#include "cli/print/warnings.h"
 #include "core/error.h"
 #include "io/image_io.h"
 #include "io/output_file.h"
@@ -29,7 +29,7 @@ bool is_folder(const fs::path& path) {
 }
 
 // Returns whether an image is a result of this program, as they lie beside maps.
-bool is_bake(const fs::path& path) {
+bool is_result(const fs::path& path) {
   if (lower_case_extension(path) != ".exr") return false;
   try {
     const ImageHeader header = read_image_header(path);
@@ -39,7 +39,7 @@ bool is_bake(const fs::path& path) {
   }
 }
 
-// Returns the images of a folder that are no bakes, by name.
+// Returns the images of a folder that are no results, by name.
 std::vector<fs::path> images_in(const fs::path& folder) {
   std::vector<fs::path> images;
   std::error_code error;
@@ -49,7 +49,7 @@ std::vector<fs::path> images_in(const fs::path& folder) {
     const bool is_image =
         entry->is_regular_file(not_there) && path.filename().string()[0] != '.' &&
         std::ranges::find(kImageExtensions, lower_case_extension(path)) != kImageExtensions.end();
-    if (is_image && !is_bake(path)) images.push_back(path);
+    if (is_image && !is_result(path)) images.push_back(path);
   }
   if (error)
     throw InputError(fmt::format("{}: could not read the folder: {}", folder.string(), error.message()));
@@ -57,12 +57,6 @@ std::vector<fs::path> images_in(const fs::path& folder) {
   if (images.empty())
     throw InputError(folder.string() + ": a folder without images, expected height maps in it");
   return images;
-}
-
-std::string one_line(std::string text) {
-  std::ranges::replace_if(
-      text, [](unsigned char c) { return c < ' '; }, ' ');
-  return text;
 }
 
 }  // namespace
@@ -139,7 +133,7 @@ int run_over_maps(const std::vector<fs::path>& maps, const Invocation& invocatio
   std::vector<std::string> bad;
   int exit_code = 0;
   const auto name_bad = [&](const fs::path& map, const std::string& message) {
-    fmt::print(stderr, "hemibake: {}\n", one_line(message));
+    print_error(message);
     bad.push_back(map.string());
   };
   for (size_t i = 0; i < maps.size(); ++i) {
@@ -156,8 +150,7 @@ int run_over_maps(const std::vector<fs::path>& maps, const Invocation& invocatio
     }
   }
   if (!bad.empty())
-    fmt::print(stderr, "hemibake: {} of {} maps were bad: {}\n", bad.size(), maps.size(),
-               one_line(fmt::format("{}", fmt::join(bad, ", "))));
+    print_error(fmt::format("{} of {} maps were bad: {}", bad.size(), maps.size(), fmt::join(bad, ", ")));
   if (invocation.json) invocation.print({{"maps", done}, {"bad", bad}}, "");
   return bad.empty() ? exit_code : 2;
 }

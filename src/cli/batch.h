@@ -12,7 +12,7 @@
 
 namespace hemibake {
 
-// What a command did with one map.
+// Holds the result of a command for one map.
 struct MapOutcome {
   nlohmann::ordered_json json;
   std::string text;   // of a map by itself

@@ -12,6 +12,7 @@
 #include "cli/command_line.h"
 #include "cli/options/parser.h"
 #include "cli/print/progress_line.h"
+#include "cli/print/warnings.h"
 #include "cli/signals.h"
 #include "core/error.h"
 #include "io/provenance.h"
@@ -57,11 +58,8 @@ constexpr std::array kCommands = {
     Command{"report", "one self-contained HTML page of what 'run' wrote", setup_report},
 };
 
-// Prints one line, whatever a file name or a library puts into it.
-int fail(int code, std::string message) {
-  std::ranges::replace_if(
-      message, [](unsigned char c) { return c < ' '; }, ' ');
-  fmt::print(stderr, "hemibake: {}\n", message);
+int fail(int code, const std::string& message) {
+  print_error(message);
   return code;
 }
 

@@ -20,7 +20,7 @@
 namespace hemibake {
 namespace {
 
-// What a file can hold: shader text in a language, or a table.
+// Lists what a file can hold: shader text in a language, or a table.
 struct Target {
   std::string name;  // of --to
   std::optional<Language> language;

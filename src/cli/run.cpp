@@ -75,8 +75,8 @@ void check_outputs(const RunOptions& options) {
   if (!options.links.empty()) check_bake_output(options.map, options.links, {".h5", ".hdf5"});
 }
 
+// Does it all for one map. options: resolved.
 MapOutcome run_one(RunOptions options, const Invocation& invocation) {
-  resolve(options, invocation);
   const ResultFolder folder(options.folder);
   check_outputs(options);
 
@@ -123,9 +123,8 @@ int run_many(const RunOptions& options, const Invocation& invocation) {
     RunOptions of_map = options;
     of_map.map.map = map;
     of_map.folder = options.folder / map.stem();
-    RunOptions resolved = of_map;
-    resolve(resolved, invocation);
-    if (was_run(resolved)) return skipped(map, of_map.folder);
+    resolve(of_map, invocation);
+    if (was_run(of_map)) return skipped(map, of_map.folder);
     return run_one(of_map, invocation);
   });
 }
@@ -133,6 +132,7 @@ int run_many(const RunOptions& options, const Invocation& invocation) {
 int run_all(RunOptions& options, const Invocation& invocation) {
   if (names_many(options.maps)) return run_many(options, invocation);
   options.map.map = options.maps[0];
+  resolve(options, invocation);
   const MapOutcome outcome = run_one(options, invocation);
   invocation.print(outcome.json, outcome.text);
   return outcome.exit_code;

@@ -33,7 +33,7 @@ struct MapErrors {
 struct MapComparison {
   std::vector<std::string> models;  // those of fit_models that predict a total
   std::vector<MapErrors> maps;
-  // Of each model: mean over the maps of the held-out rms; none where it is unknown on one of them.
+  // Mean over the maps of each model's held-out rms; none where it is unknown on one of them.
   std::vector<std::optional<double>> held_out_rms;
   std::string winner;  // the model of least held-out rms; empty for a single map
 };

@@ -138,11 +138,6 @@ fn @multi_bounce_irradiance(visibility: float, albedo: vec3) -> vec3 {
   let v = $unit_range(visibility);
   let blocked = 1.0 - v;
   let escape = #escape;
-  return rgb(
-      $all_bounces(blocked, escape, albedo.x),
-      $all_bounces(blocked, escape, albedo.y),
-      $all_bounces(blocked, escape, albedo.z));
-}
 )";
 
 constexpr std::string_view kOfVisibilityAndAo = R"(
@@ -151,7 +146,10 @@ fn @multi_bounce_irradiance(visibility: float, ao_uniform: float, albedo: vec3) 
   let blocked = 1.0 - $unit_range(visibility);
   let a = $unit_range(ao_uniform);
   let escape = #escape;
-  return rgb(
+)";
+
+// Ends either of the two functions above.
+constexpr std::string_view kEachChannel = R"(  return rgb(
       $all_bounces(blocked, escape, albedo.x),
       $all_bounces(blocked, escape, albedo.y),
       $all_bounces(blocked, escape, albedo.z));
@@ -260,13 +258,15 @@ ShaderSource source_of(const GuardedModel& model) {
 
 ShaderSource source_of(const VisibilityModel& m) {
   return {join({kVisibilityUsage, kResults}), "visibility", escape_constants(m.dark, m.open),
-          join({kUnitRange, kAllBounces, with_escape(kOfVisibility, "v", m.dark, m.open), kBounceAlbedo})};
+          join({kUnitRange, kAllBounces, with_escape(kOfVisibility, "v", m.dark, m.open), kEachChannel,
+                kBounceAlbedo})};
 }
 
 ShaderSource source_of(const VisibilityAoModel& m) {
-  return {
-      join({kVisibilityUsage, kAoUniformUsage, kResults}), "visibility-ao", escape_constants(m.dark, m.open),
-      join({kUnitRange, kAllBounces, with_escape(kOfVisibilityAndAo, "a", m.dark, m.open), kBounceAlbedo})};
+  return {join({kVisibilityUsage, kAoUniformUsage, kResults}), "visibility-ao",
+          escape_constants(m.dark, m.open),
+          join({kUnitRange, kAllBounces, with_escape(kOfVisibilityAndAo, "a", m.dark, m.open), kEachChannel,
+                kBounceAlbedo})};
 }
 
 ShaderSource source_of(const BounceMapModel& m) {

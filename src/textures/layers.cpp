@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <functional>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "core/error.h"
@@ -32,10 +33,17 @@ Layer layer_of(const Bake& bake, const char* channel, const TexelValue& value) {
 
 // Encodes vectors of at most unit length, x right, y down the rows, z up: 0..1 for −1..1.
 std::vector<Layer> encode_vectors(const Bake& bake, NormalY convention, const TexelVector& vector) {
-  const double green = convention == NormalY::kDown ? 0.5 : -0.5;
-  return {layer_of(bake, "R", [&](size_t i) { return 0.5 + 0.5 * vector(i).x; }),
-          layer_of(bake, "G", [&](size_t i) { return 0.5 + green * vector(i).y; }),
-          layer_of(bake, "B", [&](size_t i) { return 0.5 + 0.5 * vector(i).z; })};
+  const glm::dvec3 scale(0.5, convention == NormalY::kDown ? 0.5 : -0.5, 0.5);
+  std::vector<Layer> layers;
+  for (const char* channel : {"R", "G", "B"})
+    layers.push_back({channel, Grid<float>(bake.width, bake.height)});
+  parallel_for(layers[0].values.size(), kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const glm::dvec3 encoded = glm::clamp(0.5 + scale * vector(i), 0.0, 1.0);
+      for (int c = 0; c < 3; ++c) layers[static_cast<size_t>(c)].values[i] = static_cast<float>(encoded[c]);
+    }
+  });
+  return layers;
 }
 
 // Returns the length L ≤ 1 of the bent normal, by which L · (normal · bent) = V.

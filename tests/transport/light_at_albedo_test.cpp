@@ -7,18 +7,12 @@
 #include <cmath>
 
 #include "support/maps.h"
-#include "tracers/slice/slice.h"
+#include "support/sliced.h"
 #include "transport/albedo_light.h"
 #include "transport/bounces.h"
 
 namespace hemibake {
 namespace {
-
-LightTransport traced(const Surface& surface) {
-  SliceOptions options;
-  options.azimuths = 8;
-  return trace_surface(*make_slice_tracer(surface, options), true);
-}
 
 double largest_difference(const LightTransport& transport, const Grid<float>& light, double albedo) {
   const std::vector<float> everywhere(transport.bounce_matrix().rows, static_cast<float>(albedo));
@@ -36,7 +30,7 @@ TEST(LightAtAlbedo, IsTheSolversHoweverManyBouncesAreStored) {
                               white_noise_surface(16, 16, 1000),
                               synthetic_surface(SyntheticKind::kBricks, 48, 48, 0.3)};
   for (const Surface& surface : surfaces) {
-    const LightTransport transport = traced(surface);
+    const LightTransport transport = sliced(surface);
     for (const double albedo : {0.5, 0.9, 0.95})
       for (const int stored : {0, 1, 20}) {
         const Bounces bounces = bounce_light(transport, {stored, std::nullopt, 2000, albedo});
@@ -48,12 +42,12 @@ TEST(LightAtAlbedo, IsTheSolversHoweverManyBouncesAreStored) {
 
 TEST(LightAtAlbedo, FlatGroundHasItsSkyAndNothingMore) {
   const Bounces bounces =
-      bounce_light(traced(synthetic_surface(SyntheticKind::kFlat, 8, 8)), {2, std::nullopt, 2000, 0.9});
+      bounce_light(sliced(synthetic_surface(SyntheticKind::kFlat, 8, 8)), {2, std::nullopt, 2000, 0.9});
   for (const float light : bounces.at_albedo.values) EXPECT_EQ(light, 1.0f);
 }
 
 TEST(LightAtAlbedo, ConvergingBesideItLeavesIt) {
-  const LightTransport transport = traced(white_noise_surface(16, 16, 0.3));
+  const LightTransport transport = sliced(white_noise_surface(16, 16, 0.3));
   const Bounces alone = bounce_light(transport, {4, std::nullopt, 2000, 0.9});
   const Bounces beside = bounce_light(transport, {4, 1e-4, 2000, 0.9});
   EXPECT_EQ(alone.at_albedo.values, beside.at_albedo.values);

@@ -9,17 +9,11 @@
 #include "core/parallel.h"
 #include "support/threads.h"
 #include "support/maps.h"
-#include "tracers/slice/slice.h"
+#include "support/sliced.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {
 namespace {
-
-LightTransport see(const Surface& surface) {
-  SliceOptions options;
-  options.azimuths = 8;
-  return trace_surface(*make_slice_tracer(surface, options), true);
-}
 
 std::vector<double> direct_of(const LightTransport& transport) {
   return {transport.patch_direct().begin(), transport.patch_direct().end()};
@@ -67,7 +61,7 @@ int solve(const LightTransport& transport, const std::vector<float>& albedo, dou
 }
 
 TEST(Orthomin, AgreesWithEliminationAtAnyAlbedo) {
-  const LightTransport transport = see(white_noise_surface(7, 5, 0.2));
+  const LightTransport transport = sliced(white_noise_surface(7, 5, 0.2));
   const size_t patches = transport.patch_form_factors.rows;
   for (const float albedo : {0.0f, 0.5f, 0.999999f, 1.0f, -1.0f}) {
     std::vector<float> albedos(patches, albedo);
@@ -114,7 +108,7 @@ TEST(Orthomin, LightStaysInDeepPits) {
 TEST(Orthomin, TakesAFractionOfTheBounces) {
   // Rows add up to 1 to the rounding of E₀ to float, 3·10⁻⁸, which a pit multiplies by the bounces it needs.
   constexpr double kTolerance = 1e-5;
-  const LightTransport transport = see(white_noise_surface(20, 20, 0.5));
+  const LightTransport transport = sliced(white_noise_surface(20, 20, 0.5));
   const std::vector<double> direct = direct_of(transport);
   const auto furthest = [](const std::vector<double>& light) {
     double distance = 0;
@@ -135,7 +129,7 @@ TEST(Orthomin, TakesAFractionOfTheBounces) {
 }
 
 TEST(Orthomin, EndsWhereNothingIsLeft) {
-  const LightTransport transport = see(white_noise_surface(8, 8, 0.1));
+  const LightTransport transport = sliced(white_noise_surface(8, 8, 0.1));
   const size_t patches = transport.patch_form_factors.rows;
   Orthomin dark(transport.patch_form_factors, {}, std::vector<double>(patches), std::vector<double>(patches));
   EXPECT_FALSE(dark.step());
@@ -143,7 +137,7 @@ TEST(Orthomin, EndsWhereNothingIsLeft) {
 }
 
 TEST(Orthomin, SameBytesAtAnyThreadCount) {
-  const LightTransport transport = see(white_noise_surface(48, 48, 0.1));
+  const LightTransport transport = sliced(white_noise_surface(48, 48, 0.1));
   std::vector<double> one, two;
   set_thread_count(1);
   solve(transport, {}, 1e-8, one);
