@@ -81,7 +81,7 @@ int bake_many(const BakeCommandOptions& options, const Invocation& invocation) {
     of_map.map.map = map;
     of_map.output = options.output / (map.stem().string() + ".exr");
     resolve(of_map, invocation);
-    if (is_done(of_map.output, of_map.map, of_map.bake)) return skipped(map, of_map.output);
+    if (records(of_map.output, wanted_record(of_map.map, of_map.bake))) return skipped(map, of_map.output);
     return bake_one(of_map, invocation);
   });
 }

@@ -112,7 +112,7 @@ MapOutcome run_one(RunOptions options, const Invocation& invocation) {
 bool was_run(const RunOptions& options) {
   std::error_code not_there;
   return std::filesystem::exists(options.folder / "check.json", not_there) &&
-         is_done(options.folder / "bake.exr", options.map, options.bake);
+         records(options.folder / "bake.exr", wanted_record(options.map, options.bake));
 }
 
 int run_many(const RunOptions& options, const Invocation& invocation) {

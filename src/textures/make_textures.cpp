@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "bake/record.h"
 #include "io/output_file.h"
 #include "textures/layers.h"
 #include "textures/light.h"
@@ -26,7 +27,7 @@ bool holds_bounce(const TextureSettings& settings, TextureKind kind) {
 Provenance record_texture(const Provenance& of_bake, const Bake& bake, const TextureSettings& settings,
                           TextureKind kind) {
   Provenance p = of_bake;
-  p["texture"] = texture_name(kind);
+  record_texture_settings(settings, kind, p);
   p["holds"] = describe_texture(bake, settings, kind);
   p["encoding"] = holds_vectors(kind) ? "linear, 0..1 for -1..1" : "linear, 0..1";
   if (holds_vectors(kind)) p["green"] = *settings.normal_y == NormalY::kUp ? "up" : "down";
@@ -47,6 +48,12 @@ ChannelRange range_of(const Layer& layer) {
 }
 
 }  // namespace
+
+void record_texture_settings(const TextureSettings& settings, TextureKind kind, Provenance& provenance) {
+  TextureSettings copy = settings;
+  provenance["texture"] = texture_name(kind);
+  record_fields(texture_fields(copy), provenance);
+}
 
 std::vector<WrittenTexture> make_textures(const Bake& bake, const Provenance& provenance,
                                           const TextureSettings& settings,

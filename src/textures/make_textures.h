@@ -23,6 +23,9 @@ struct WrittenTexture {
   std::vector<ChannelRange> channels;
 };
 
+// Records everything of the settings that decides the bytes of one texture. settings: resolved.
+void record_texture_settings(const TextureSettings& settings, TextureKind kind, Provenance& provenance);
+
 // Writes every texture of the settings, all or none. bake: with the planes of bake_only_what_textures_need
 // (planes.h), or more. provenance: how the bake was made. settings: resolved. name: what the files' names
 // begin with. Throws InputError as check_planes and read_packed_inputs, and where a file cannot be written.

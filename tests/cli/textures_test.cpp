@@ -174,7 +174,6 @@ TEST_F(Textures, RefusesWhatMakesNoSense) {
   expect_refusal("textures b.exr -o t --maps cubes", HasSubstr("cubes"));
   expect_refusal("textures b.exr -o t --dither --format png16", HasSubstr("dither"));
   expect_refusal("textures b.exr -o t --rays 8", HasSubstr("rays"));
-  expect_refusal("textures . -o t", HasSubstr("."));
   expect_refusal("textures none.png -o t", HasSubstr("none.png"));
   // Its plane `bounce` is converged, but there are no bounces to sum at another albedo.
   run_well("bake map.exr -o zero.exr --links l.h5 --bounces 0 --rays 4");

@@ -41,6 +41,14 @@ std::string describe_textures(const std::vector<WrittenTexture>& textures, const
   return text;
 }
 
+std::string line_of_textures(const std::vector<WrittenTexture>& textures, const std::filesystem::path& input,
+                             const std::filesystem::path& folder) {
+  std::string text = fmt::format("{} -> {}:", input.string(), folder.string());
+  for (const WrittenTexture& texture : textures)
+    text += fmt::format(" {} {:.4f}", texture_name(texture.kind), texture.channels[0].mean);
+  return text;
+}
+
 nlohmann::ordered_json json_from_textures(const std::vector<WrittenTexture>& textures,
                                           const TextureSettings& settings) {
   const TextureFormatInfo& format = texture_format_info(settings.coding.format);

@@ -13,6 +13,10 @@ namespace hemibake {
 std::string describe_textures(const std::vector<WrittenTexture>& textures, const TextureSettings& settings,
                               const std::filesystem::path& folder);
 
+// Returns one line for the textures of one of many inputs.
+std::string line_of_textures(const std::vector<WrittenTexture>& textures, const std::filesystem::path& input,
+                             const std::filesystem::path& folder);
+
 nlohmann::ordered_json json_from_textures(const std::vector<WrittenTexture>& textures,
                                           const TextureSettings& settings);
 
