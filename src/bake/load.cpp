@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "io/file_context.h"
+#include "io/height_file.h"
 #include "io/image_io.h"
 #include "io/provenance.h"
 #include "surface/normals.h"
@@ -11,7 +12,7 @@ namespace hemibake {
 namespace {
 
 Surface read_surface(const MapSettings& settings, double& lowest_m) {
-  Grid<float> heights = read_height_map(settings.map, settings.channel);
+  Grid<float> heights = read_height_file(settings.map, settings.file).values;
   return with_file_context(settings.map, [&] {
     if (settings.filter.radius > 0) heights = bilateral_filter(heights, settings.filter, settings.edge);
     lowest_m = settings.amplitude_m * static_cast<double>(*std::ranges::min_element(heights.values));

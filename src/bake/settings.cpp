@@ -146,10 +146,30 @@ std::vector<Field> map_fields(MapSettings& s) {
                "length of the map's longer side, m"),
       recorded("amplitude", "amplitude_m", "Surface", number(s.amplitude_m, 0, kLargestLengthM),
                "height of map value 1 over 0, m"),
-      recorded("edge", "edge", "Surface", choice(s.edge, {"wrap", "open"}),
-               "beyond the border: the map again for ever (wrap), or nothing (open)"),
-      recorded("channel", "channel", "", text(s.channel),
+      recorded("edge", "edge", "Surface", choice(s.edge, {"wrap", "open", "ground"}),
+               "beyond the border: the map again for ever (wrap), nothing (open), or ground level with the "
+               "border (ground)"),
+      recorded("channel", "channel", "", text(s.file.channel),
                "channel of the map to take, by name or index; default: green, or the only one"),
+      when(
+          [&s] { return s.file.encoding != SplitEncoding::kNone; },
+          recorded(
+              "encoding", "encoding", "Map", choice(s.file.encoding, {"none", "terrarium", "mapbox", "rg16"}),
+              "heights split over channels of 8 bits: map tiles of Terrarium or Mapbox, or upper bits in "
+              "red and lower in green [none]")),
+      when([&s] { return s.file.part != 0; }, recorded("part", "part", "Map", whole(s.file.part, 0, 65535),
+                                                       "of a file of several images, from 0")),
+      when([&s] { return s.file.window != ImageWindow::kDisplay; },
+           recorded("window", "window", "Map", choice(s.file.window, {"display", "data"}),
+                    "of an EXR: the one that is shown, or the one that has data [display]")),
+      when([&s] { return !s.file.raw.empty(); },
+           shown_as(recorded("raw", "raw", "Map", text(s.file.raw),
+                             "size and type of a file without a header: u8, i8, u16le, u16be, i16le, i16be, "
+                             "f32le, f32be, f64le, f64be"),
+                    "WxH:TYPE")),
+      when([&s] { return s.file.no_data.has_value(); },
+           recorded("nodata", "nodata", "Map", number(s.file.no_data, -1e300, 1e300),
+                    "stored value of texels without a height; default: as the file says")),
       recorded("filter-radius", "filter_radius", "March", number(s.filter.radius, 0, 16),
                "bilateral filter of the heights first, texels; 0: none [1]"),
       when(filtered, recorded("filter-tolerance", "filter_tolerance", "March",

@@ -17,6 +17,7 @@
 #include "surface/normals.h"
 #include "surface/surface.h"
 #include "tracers/march/march.h"
+#include "io/height_file.h"
 #include "tracers/ray_options.h"
 
 namespace hemibake {
@@ -29,7 +30,7 @@ enum class NormalLength { kUnit, kStored };
 
 struct MapSettings {
   std::filesystem::path map;
-  std::string channel;       // empty: green, or the only one
+  HeightFileOptions file;
   double size_m = 1;         // the longer side
   double amplitude_m = 0.1;  // height of map value 1 over 0
   Edge edge = Edge::kWrap;

@@ -140,7 +140,7 @@ std::vector<double> values_of_nodes(const DiskTree& tree, const std::vector<doub
 DiskReach make_disk_reach(const Surface& surface, double opening_ratio, double radius_m) {
   DiskReach reach{opening_ratio, std::numeric_limits<double>::infinity()};
   if (radius_m > 0) reach.radius_texels = radius_m / surface.texel_size_m;
-  if (surface.edge == Edge::kOpen) return reach;
+  if (surface.edge != Edge::kWrap) return reach;
   reach.period = {surface.width(), surface.height()};
   if (!(radius_m > 0)) reach.radius_texels = far_radius_m(surface) / surface.texel_size_m;
   return reach;

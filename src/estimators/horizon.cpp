@@ -22,7 +22,7 @@ constexpr double kNearestSampleTexels = 0.5;
 std::optional<double> height_at(const Surface& surface, double x, double y) {
   const double cell_x = std::floor(x), cell_y = std::floor(y);
   const int w = surface.width(), h = surface.height();
-  if (surface.edge == Edge::kOpen && (cell_x < 0 || cell_y < 0 || cell_x >= w - 1 || cell_y >= h - 1))
+  if (surface.edge != Edge::kWrap && (cell_x < 0 || cell_y < 0 || cell_x >= w - 1 || cell_y >= h - 1))
     return std::nullopt;
   const int i = wrap_index(static_cast<int>(cell_x), w), j = wrap_index(static_cast<int>(cell_y), h);
   const auto corner = [&](int dx, int dy) -> double { return surface.heights_m((i + dx) % w, (j + dy) % h); };

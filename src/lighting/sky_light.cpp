@@ -33,10 +33,10 @@ SurfacePoint surface_over(const Surface& surface, const HeightFieldRayCaster& ca
   const auto columns = static_cast<int>(facet_columns(surface));
   const auto rows = static_cast<int>(facet_count(surface) / 2) / columns;
   const auto into = [&](double value, int cells, int& cell) {
-    if (surface.edge == Edge::kOpen) value = std::clamp(value, 0.0, static_cast<double>(cells));
+    if (surface.edge != Edge::kWrap) value = std::clamp(value, 0.0, static_cast<double>(cells));
     const double floor = std::floor(value);
     cell = static_cast<int>(floor);
-    if (surface.edge == Edge::kOpen) cell = std::min(cell, cells - 1);
+    if (surface.edge != Edge::kWrap) cell = std::min(cell, cells - 1);
     const double share = value - cell;
     cell = wrap_index(cell, cells);
     return share;

@@ -157,7 +157,7 @@ inline bool HeightFieldRayCaster::enter_next(const Block& block, bool along_x, d
   const int tiles_x = cell.x < 0 ? -1 : cell.x == cells_x_ ? 1 : 0;
   const int tiles_y = cell.y < 0 ? -1 : cell.y == cells_y_ ? 1 : 0;
   if (tiles_x != 0 || tiles_y != 0) {
-    if (surface_.edge == Edge::kOpen) return false;
+    if (surface_.edge != Edge::kWrap) return false;
     cell.x -= tiles_x * cells_x_;
     cell.y -= tiles_y * cells_y_;
     ray.x -= tiles_x * cells_x_;

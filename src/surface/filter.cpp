@@ -61,7 +61,7 @@ Grid<float> bilateral_filter(const Grid<float>& heights, const FilterOptions& op
     double sum = 0, weight_sum = 0;
     for (const Tap& tap : taps) {
       const int i = wrap_index(x + tap.dx, width), j = wrap_index(y + tap.dy, height);
-      if (edge == Edge::kOpen && (i != x + tap.dx || j != y + tap.dy)) continue;
+      if (edge != Edge::kWrap && (i != x + tap.dx || j != y + tap.dy)) continue;
       const double difference = (heights(i, j) - own) / options.tolerance;
       const double weight = tap.weight * std::exp(-0.5 * difference * difference);
       // The texel's own tap has weight 1, so that weight_sum is never 0; differences add up without

@@ -21,7 +21,7 @@ Surface make_surface(Grid<float> heights, double size_m, double amplitude_m, Edg
   if (heights.empty()) throw InputError("the map has no texels, expected at least one");
   if (heights.size() > kMaxTexels)
     throw InputError(fmt::format("the map has {} texels, expected at most {}", heights.size(), kMaxTexels));
-  if (edge == Edge::kOpen && (heights.width < 2 || heights.height < 2))
+  if (edge != Edge::kWrap && (heights.width < 2 || heights.height < 2))
     throw InputError(
         fmt::format("{}x{} texels span no surface with open edges, expected at least 2x2 (or wrapping edges)",
                     heights.width, heights.height));

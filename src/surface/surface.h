@@ -11,8 +11,9 @@
 
 namespace hemibake {
 
-// The surroundings of the map: kWrap repeats it for ever, kOpen has nothing beyond the border.
-enum class Edge { kWrap, kOpen };
+// The surroundings of the map: kWrap repeats it for ever, kOpen has nothing beyond the border, kGround has
+// ground there that goes on level with the border: the sky ends at the horizontal plane.
+enum class Edge { kWrap, kOpen, kGround };
 
 // Returns index i as the edge continues an axis of n texels: modulo n, or the nearest of 0..n-1.
 inline int wrap_or_clamp(int i, int n, Edge edge) {

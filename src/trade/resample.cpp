@@ -33,7 +33,7 @@ Grid<T> resample(const Grid<T>& grid, int width, int height, Edge edge) {
 }  // namespace
 
 bool can_halve(const Surface& surface) {
-  const int smallest = surface.edge == Edge::kOpen ? 4 : 2;  // open edges need two texels a side
+  const int smallest = surface.edge != Edge::kWrap ? 4 : 2;  // open edges need two texels a side
   return surface.width() % 2 == 0 && surface.height() % 2 == 0 &&
          std::min(surface.width(), surface.height()) >= smallest;
 }

@@ -9,7 +9,8 @@
 namespace hemibake {
 namespace {
 
-constexpr std::array<std::string_view, 6> kGroups = {"", "Surface", "Tracing", "March", "Light", "Output"};
+constexpr std::array<std::string_view, 7> kGroups = {"",      "Map",   "Surface", "Tracing",
+                                                     "March", "Light", "Output"};
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "core/constants.h"
@@ -13,6 +14,7 @@ namespace hemibake {
 namespace {
 
 constexpr double kGib = 1024.0 * 1024 * 1024;
+constexpr std::array kEdgeNames = {"wrap", "open", "ground"};
 constexpr size_t kTexelsNamed = 5;  // of those that did not converge
 
 double mean_of(const Grid<float>& plane) { return mean(std::span<const float>(plane.values)); }
@@ -116,7 +118,7 @@ std::string describe_bake(const BakeOptions& options, const BakeResult& result) 
   const double million_rays = 1e-6 * static_cast<double>(result.counts.rays);
   std::string text = fmt::format("{}: {}x{} texels, {:g} m, amplitude {:g} m, {} edges, {} patches\n",
                                  map.map.string(), bake.width, bake.height, map.size_m, map.amplitude_m,
-                                 map.edge == Edge::kWrap ? "wrap" : "open",
+                                 kEdgeNames.at(static_cast<size_t>(map.edge)),
                                  result.settings.patch_kind == PatchKind::kFacets ? "facets" : "texels");
   text += fmt::format("rays      {:.1f} M in {:.1f} s ({:.1f} cpu-s, {:.2f} Mray/cpu-s)", million_rays,
                       result.seconds, result.cpu_seconds, million_rays / result.trace_cpu_seconds);

@@ -1,0 +1,13 @@
+#include "io/height_file.h"
+
+#include "io/image_io.h"
+
+namespace hemibake {
+
+HeightFile read_height_file(const std::filesystem::path& path, const HeightFileOptions& options) {
+  HeightFile file;
+  file.values = read_height_map(path, options.channel);
+  return file;
+}
+
+}  // namespace hemibake
