@@ -162,7 +162,7 @@ void add_differences(const SceneImages& shaded, Gallery& gallery) {
     row.push_back({colored(scaled(shown[k], kPanelSide), scale, clipped_shown),
                    error_caption(images[k]->caption, images[k]->light, shaded.truth)});
   }
-  const Grid<glm::vec3> bar = scale_bar(scale, kPanelSide);
+  const Grid<glm::vec3> bar = scale_bar(scale, 2 * kPanelSide);
   gallery.add_figure("differences", {&row, 1}, {&bar, 1});
 }
 
