@@ -16,8 +16,8 @@ constexpr double kMeanWeight = 1.5;  // of the mean's error over that of its tex
 constexpr int kSweeps = 2;           // a third changes nothing in the fifth digit
 
 struct Candidate {
-  StoredPair steps;
   double squares = 0;  // error of the texel
+  StoredPair steps;
 };
 using Candidates = std::array<Candidate, kCandidates>;
 
@@ -44,9 +44,9 @@ Candidates candidates_of(const MappedLight& light, const StoredPair& rounded, in
     for (int b = -kBounceReach; b <= kBounceReach; ++b) {
       const int visibility = std::clamp(rounded.visibility + v, 0, steps);
       const int bounce = std::clamp(rounded.bounce + b, visibility, steps);
-      candidates[count++] = {{visibility, bounce},
-                             squared_error(light, static_cast<double>(visibility) / steps,
-                                           static_cast<double>(bounce) / steps, bounce_albedo)};
+      candidates[count++] = {squared_error(light, static_cast<double>(visibility) / steps,
+                                           static_cast<double>(bounce) / steps, bounce_albedo),
+                             {visibility, bounce}};
     }
   return candidates;
 }
@@ -71,7 +71,7 @@ StoredPair best_of(const Candidates& candidates, const StoredPair& rest, const M
 
 }  // namespace
 
-bool knows_mapped_light(const Bake& bake) { return !bake.bounce.empty() && bake.irradiance.size() > 2; }
+bool knows_mapped_light(const Bake& bake) { return !bake.bounce.empty() && bake.irradiance.size() > 3; }
 
 MappedLight mapped_light_at(const Bake& bake, size_t texel) {
   MappedLight light{visibility_at(bake, texel), bounce_at(bake, texel), {}};

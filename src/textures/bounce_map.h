@@ -22,7 +22,7 @@ struct MappedLight {
 };
 
 // Returns whether the light at every albedo is known well enough to judge a bounce map: the bake has its
-// plane, and two bounces or more.
+// plane, and three bounces or more (README.md).
 bool knows_mapped_light(const Bake& bake);
 
 // Returns the light of one texel. bake: knows_mapped_light.

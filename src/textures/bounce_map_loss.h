@@ -37,7 +37,7 @@ struct BounceMapLoss {
   const StoredLoss* find(int bits, int box) const;
 };
 
-// Returns nothing where the bake has no plane `bounce` or fewer than two bounces.
+// Returns nothing where the bake has no plane `bounce` or fewer than three bounces.
 std::optional<BounceMapLoss> bounce_map_loss(const Bake& bake);
 
 }  // namespace hemibake

@@ -59,14 +59,13 @@ std::string describe_textures(const std::vector<WrittenTexture>& textures, const
 std::string describe_bounce_map(const std::optional<BounceMapLoss>& loss) {
   if (!loss) return "";
   const StoredLoss& bytes = *loss->find(8, 1);
-  std::string text = fmt::format(
-      "map       V and E at {:g}, albedos .2 to .95, rms: {:.4f} at 8 bits (at most {:.3f}), {:.4f} at 16",
-      loss->bounce_albedo, bytes.mean_rms(), bytes.largest(), loss->find(16, 1)->mean_rms());
+  std::string text = fmt::format("bounce map: off by {:.4f} rms at 8 bits ({:.3f} at most), {:.4f} at 16",
+                                 bytes.mean_rms(), bytes.largest(), loss->find(16, 1)->mean_rms());
   if (const StoredLoss* filtered = loss->find(8, 4))
-    text += fmt::format(", {:.4f} in means of 4 x 4 texels", filtered->mean_rms());
-  text += "\n";
+    text += fmt::format(", {:.4f} in 4 x 4 means", filtered->mean_rms());
+  text += fmt::format("; albedos {:g} to {:g}\n", kBounceMapAlbedos.front(), kBounceMapAlbedos.back());
   if (loss->truth_rms > kTruthUncertain)
-    text += fmt::format("          against light known to {:.4f} only: more bounces make it surer\n",
+    text += fmt::format("            judged by light that the stored bounces tell to {:.4f} rms\n",
                         loss->truth_rms);
   return text;
 }
