@@ -138,10 +138,11 @@ std::vector<ReportModel> report_models(const std::optional<FitFile>& fits, const
 }
 
 ReportData gather_report(const ReportFolder& folder, std::span<const ReportModel> models, const Rgb& albedo) {
-  ReportData data{title_of(folder), albedo, {}, {}, {}, {}, {}};
+  ReportData data{title_of(folder), albedo, {}, {}, {}, {}, {}, {}};
   if (folder.bake) {
     const Bake& bake = folder.bake->bake;
     data.means = means_of(bake);
+    data.bounce_map = bounce_map_loss(bake);
     if (!bake.visible_fraction.empty() && bake.irradiance.size() > 1)
       data.texel_errors = texel_errors(bake, models);
   }

@@ -10,6 +10,7 @@
 #include "fitting/candidates.h"
 #include "model/model.h"
 #include "report/html_folder.h"
+#include "textures/bounce_map_loss.h"
 
 namespace hemibake {
 
@@ -65,6 +66,7 @@ struct ReportData {
   Rgb albedo{};  // the page opens with
   BakeMeans means;
   std::vector<TexelErrors> texel_errors;
+  std::optional<BounceMapLoss> bounce_map;   // none where the bake lacks what it takes
   std::vector<BinTotals> totals;             // of each bin of the curves; 0 for an empty bin
   std::vector<std::optional<Score>> scores;  // of each model; none without curves, and of the bounce map
   std::vector<OtherModel> other_models;

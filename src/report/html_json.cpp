@@ -58,6 +58,24 @@ Json json_from_texel_errors(const TexelErrors& errors, std::span<const ReportMod
   return json;
 }
 
+// rms, percentile, largest: one for each albedo.
+Json json_from_bounce_map(const std::optional<BounceMapLoss>& loss) {
+  if (!loss) return nullptr;
+  Json list = Json::array();
+  for (const StoredLoss& stored : loss->stored) {
+    Json& json = list.emplace_back(Json{{"bits", stored.bits}, {"box", stored.box}});
+    for (const MapError& error : stored.by_albedo) {
+      json["rms"].push_back(rounded(error.rms));
+      json["percentile"].push_back(rounded(error.percentile));
+      json["largest"].push_back(rounded(error.largest));
+    }
+  }
+  return {{"bounce_albedo", loss->bounce_albedo},
+          {"truth_rms", rounded(loss->truth_rms)},
+          {"albedos", kBounceMapAlbedos},
+          {"stored", list}};
+}
+
 Json json_from_bake(const BakeFile& file, std::span<const ReportModel> models, const PackedPlanes& planes,
                     const ReportData& data) {
   Json json = {{"width", file.bake.width}, {"height", file.bake.height}};
@@ -70,6 +88,7 @@ Json json_from_bake(const BakeFile& file, std::span<const ReportModel> models, c
   json["texel_errors"] = Json::array();
   for (const TexelErrors& errors : data.texel_errors)
     json["texel_errors"].push_back(json_from_texel_errors(errors, models, data.other_models));
+  json["bounce_map"] = json_from_bounce_map(data.bounce_map);
   Json list = Json::array();
   for (const PackedPlane& plane : planes.planes) list.push_back({{"name", plane.name}, {"step", plane.step}});
   json["planes"] = {{"width", planes.width},

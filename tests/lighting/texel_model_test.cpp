@@ -42,7 +42,9 @@ TEST(TexelModel, LightIsInRangeAtAllExtremes) {
       for (const double albedo : {0.0, 0.5, 0.999999, 1.0}) {
         const double light = model_irradiance(model, at, albedo);
         EXPECT_GE(light, 0) << model.index();
-        EXPECT_LE(light, 1 + 1e-12) << model.index();
+        // The published constants of the cubic sum to 1.0001 at V = 1 and albedo 1.
+        const double excess = std::holds_alternative<JimenezModel>(model) ? 1e-4 : 0;
+        EXPECT_LE(light, 1 + excess + 1e-12) << model.index();
       }
     });
 }

@@ -46,6 +46,14 @@ export interface PlaneList {
   total_error_over_pi: number;
 }
 
+// Holds what a bounce map leaves of the light, E/π.
+export interface BounceMapLoss {
+  bounce_albedo: number;
+  truth_rms: number; // how far the stored bounces tell the light at the map's own albedo
+  albedos: number[];
+  stored: { bits: number; box: number; rms: number[]; percentile: number[]; largest: number[] }[]; // at each of `albedos`
+}
+
 export interface Bake {
   width: number;
   height: number;
@@ -56,6 +64,7 @@ export interface Bake {
   mean_residual: number | null;
   worst_residual: number | null;
   texel_errors: Record<string, number>[]; // at `albedo`: rms by the id of a model or of an other_models
+  bounce_map: BounceMapLoss | null;
   planes: PlaneList;
   settings: Record<string, string | number | boolean> | null;
 }

@@ -1,6 +1,6 @@
 // Shows the numbers that a person quotes.
 
-import { report } from './data';
+import { report, type BounceMapLoss } from './data';
 import { h, number, place, table, withError } from './dom';
 
 function percent(value: number | null | undefined): string {
@@ -42,6 +42,7 @@ export function showSummary(): void {
     host.append(h('ul', { class: 'missing', 'aria-label': 'what is missing' }, missing.map((line) => h('li', {}, line))));
   if (fits) host.append(constants());
   if (curves || bake?.texel_errors.length) host.append(errors());
+  if (bake?.bounce_map) host.append(bounceMapLoss(bake.bounce_map));
 }
 
 // Describes the bake in one sentence.
@@ -96,6 +97,16 @@ function errors(): HTMLElement {
     rows.push([other.title, number(other.score?.rms, 3), number(other.score?.max, 3), ...texelCells(other.id)]);
   return table(['model', 'bins, rms', 'bins, largest', ...perTexel.map((entry) => `texels, ρ = ${entry.albedo}`)], rows,
                'How far each model is from this map, E/π: over bins × albedos 0, 0.1, … 1 (V is the mean of the bin), and rms over all texels at one albedo');
+}
+
+function bounceMapLoss({ bounce_albedo, truth_rms, albedos, stored }: BounceMapLoss): HTMLElement {
+  const rows = stored.map(({ bits, box, rms, percentile, largest }) => [
+    `${bits === 32 ? 'float' : `${bits} bits`}${box > 1 ? `, means of ${box} × ${box} texels` : ''}`,
+    ...albedos.map((_, i) => [rms, percentile, largest].map((list) => number(list[i], 2)).join(' · ')),
+  ]);
+  return table(['stored as', ...albedos.map((albedo) => `ρ = ${albedo}`)], rows,
+               `What the bounce map of V and E at ρ = ${bounce_albedo} leaves of E/π: rms · 99.9th percentile · largest over the texels; ` +
+               `the stored bounces tell the light to ${number(truth_rms, 2)} rms`);
 }
 
 export function showTitle(): void {
