@@ -105,6 +105,18 @@ TEST(HtmlData, ErrorsOverTheTexels) {
   }
 }
 
+TEST(HtmlData, BounceMapLeavesNothingOfItsOwnKindOfLight) {
+  EscapeWorld world;
+  ReportFolder folder;
+  folder.bake = BakeFile{world.bake, {}};
+  const auto loss = gather_report(folder, {}, {}).bounce_map;
+  ASSERT_TRUE(loss);
+  EXPECT_EQ(loss->bounce_albedo, kBounceAlbedo);
+  for (const MapError& error : loss->find(32, 1)->by_albedo) EXPECT_LT(error.rms, 2e-5);
+  folder.bake->bake.bounce = {};
+  EXPECT_FALSE(gather_report(folder, {}, {}).bounce_map);
+}
+
 TEST(HtmlData, MeanVisibilityOfBakesOfEitherVersion) {
   EscapeWorld world;
   double mean = 0;

@@ -101,7 +101,7 @@ function errors(): HTMLElement {
 
 function bounceMapLoss({ bounce_albedo, truth_rms, albedos, stored }: BounceMapLoss): HTMLElement {
   const rows = stored.map(({ bits, box, rms, percentile, largest }) => [
-    `${bits === 32 ? 'float' : `${bits} bits`}${box > 1 ? `, means of ${box} × ${box} texels` : ''}`,
+    `${bits === 32 ? 'float' : `${bits} bits`}${box > 1 ? `, ${box} × ${box} box` : ''}`,
     ...albedos.map((_, i) => [rms, percentile, largest].map((list) => number(list[i], 2)).join(' · ')),
   ]);
   return table(['stored as', ...albedos.map((albedo) => `ρ = ${albedo}`)], rows,
