@@ -51,7 +51,9 @@ std::optional<BounceMap> chosen_bounce_map(const Bake& bake, const TextureSettin
                            [&](size_t texel) { return mapped_light_at(bake, texel); });
 }
 
+// Returns whether a texture is, or is the second half of, a bounce map whose loss is known.
 bool completes_bounce_map(const TextureSettings& settings, TextureKind kind) {
+  if (settings.coding.dither) return false;
   if (kind == TextureKind::kBounceMap) return true;
   return kind == TextureKind::kBounce && settings.wants(TextureKind::kVisibility) &&
          !settings.wants(TextureKind::kBounceMap);

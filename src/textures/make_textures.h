@@ -23,7 +23,7 @@ struct WrittenTexture {
   std::filesystem::path path;
   std::string holds;  // in one line
   std::vector<ChannelRange> channels;
-  std::optional<BounceMapLoss> bounce_map;  // of the texture that makes a bounce map whole
+  std::optional<BounceMapLoss> bounce_map;  // of the texture that makes one whole; not of dithered ones
 };
 
 // Records everything of the settings that decides the bytes of one texture. settings: resolved.

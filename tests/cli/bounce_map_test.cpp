@@ -95,6 +95,7 @@ TEST_F(BounceMapFiles, OfEightBitsAreChosenTogether) {
 TEST_F(BounceMapFiles, DitheredOnesAreNot) {
   const nlohmann::json json = run_json("textures b.exr -o d --maps bounce-map --format png8 --dither");
   EXPECT_THAT(json["textures"][0]["holds"].get<std::string>(), testing::Not(testing::HasSubstr("chosen")));
+  EXPECT_FALSE(json["textures"][0].contains("bounce_map"));
   const Grid<float> visibility = read("d/b_bounce_map.png", "R");
   for (size_t i = 0; i < visibility.size(); ++i)
     EXPECT_LE(std::abs(visibility[i] - bake_.visibility[i]), 1.0f / 255 + 1e-6f);

@@ -51,8 +51,7 @@ std::string describe_textures(const std::vector<WrittenTexture>& textures, const
   for (const WrittenTexture& texture : textures)
     text += fmt::format("  {:{}}  {:10}  {}\n", texture.path.filename().string(), widest,
                         texture_name(texture.kind), describe_values(texture));
-  if (!settings.coding.dither)
-    for (const WrittenTexture& texture : textures) text += describe_bounce_map(texture.bounce_map);
+  for (const WrittenTexture& texture : textures) text += describe_bounce_map(texture.bounce_map);
   return text;
 }
 
