@@ -164,8 +164,8 @@ TEST_F(Export, CheckJudgesTheEscapeModels) {
   const CommandOutcome outcome = run("check c.json --json");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
   std::map<std::string, std::string> details;
-  for (const nlohmann::json& check : nlohmann::json::parse(outcome.out).at("checks"))
-    details[check.at("quantity")] = check.at("detail");
+  const nlohmann::json checks = nlohmann::json::parse(outcome.out).at("checks");
+  for (const nlohmann::json& check : checks) details[check.at("quantity")] = check.at("detail");
   const std::string m = fmt::format("{:.3g}", json["maps"][0]["mean_escape"].get<double>());
   for (const std::string& model :
        {std::string("visibility"), std::string("visibility-ao"), "visibility-ao-mean, m = " + m})
