@@ -178,7 +178,7 @@ TEST_F(Export, CheckJudgesTheEscapeModels) {
   write_bytes(folder_ / "c.json", json.dump());
   const CommandOutcome refused = run("check c.json");
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.err.find("c.json: open of visibility-ao is 1.25, expected 0 to 1"), std::string::npos)
+  EXPECT_NE(refused.err.find("c.json: open of visibility and ao is 1.25, expected 0 to 1"), std::string::npos)
       << refused.err;
 }
 
