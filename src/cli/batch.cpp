@@ -28,20 +28,22 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, not_there);
 }
 
-// Returns whether an image is a result of this program, as they lie beside maps.
-bool is_result(const fs::path& path) {
-  if (lower_case_extension(path) != ".exr") return false;
+enum class ImageKind { kMap, kBake, kTexture };
+
+// Returns what an image is; textures lie beside maps and bakes.
+ImageKind kind_of(const fs::path& path) {
   try {
-    const ImageHeader header = read_image_header(path);
-    return header.provenance.is_object() && header.provenance.contains("tracer");
+    const Provenance made = read_image_header(path).provenance;
+    if (!made.is_object() || !made.contains("tracer")) return ImageKind::kMap;
+    return made.contains("texture") ? ImageKind::kTexture : ImageKind::kBake;
   } catch (const InputError&) {
-    return false;  // is named as a bad map
+    return ImageKind::kMap;  // is named as a bad map
   }
 }
 
-// Returns the images of a folder that are no results, by name.
+// Returns the images of a folder that are no results, by name; the bakes where there are no others.
 std::vector<fs::path> images_in(const fs::path& folder) {
-  std::vector<fs::path> images;
+  std::vector<fs::path> images, bakes;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const fs::path& path = entry->path();
@@ -49,10 +51,14 @@ std::vector<fs::path> images_in(const fs::path& folder) {
     const bool is_image =
         entry->is_regular_file(not_there) && path.filename().string()[0] != '.' &&
         std::ranges::find(kImageExtensions, lower_case_extension(path)) != kImageExtensions.end();
-    if (is_image && !is_result(path)) images.push_back(path);
+    if (!is_image) continue;
+    const ImageKind kind = kind_of(path);
+    if (kind == ImageKind::kMap) images.push_back(path);
+    if (kind == ImageKind::kBake) bakes.push_back(path);
   }
   if (error)
     throw InputError(fmt::format("{}: could not read the folder: {}", folder.string(), error.message()));
+  if (images.empty()) images = std::move(bakes);
   std::ranges::sort(images);
   if (images.empty())
     throw InputError(folder.string() + ": a folder without images, expected height maps in it");
@@ -104,16 +110,7 @@ void refuse_settings_of_one_map(const Invocation& invocation, std::initializer_l
       throw InputError(fmt::format("--{}: is of one map, expected one map with it", name));
 }
 
-bool is_done(const fs::path& bake, const MapSettings& map, const BakeSettings& settings) {
-  std::error_code not_there;
-  if (!fs::is_regular_file(bake, not_there)) return false;
-  Provenance made;
-  try {
-    made = read_image_header(bake).provenance;
-  } catch (const InputError&) {
-    return false;
-  }
-  if (!made.is_object()) return false;
+Provenance wanted_record(const MapSettings& map, const BakeSettings& settings) {
   Provenance wanted = make_provenance("");
   record_map(map, hash_files(map), wanted);
   BakeSettings copy = settings;
@@ -121,6 +118,19 @@ bool is_done(const fs::path& bake, const MapSettings& map, const BakeSettings& s
   for (const char* elsewhere : {"command", "input_path", "normals_path"}) wanted.erase(elsewhere);
   if (settings.target_error)
     for (const char* chosen : {"rays", "bounces"}) wanted.erase(chosen);
+  return wanted;
+}
+
+bool records(const fs::path& image, const Provenance& wanted) {
+  std::error_code not_there;
+  if (!fs::is_regular_file(image, not_there)) return false;
+  Provenance made;
+  try {
+    made = read_image_header(image).provenance;
+  } catch (const InputError&) {
+    return false;
+  }
+  if (!made.is_object()) return false;
   return std::ranges::all_of(wanted.items(), [&](const auto& item) {
     const auto found = made.find(item.key());
     return found != made.end() && *found == item.value();

@@ -9,6 +9,7 @@
 
 #include "bake/settings.h"
 #include "cli/options/command.h"
+#include "io/provenance.h"
 
 namespace hemibake {
 
@@ -29,15 +30,19 @@ MapOutcome skipped(const std::filesystem::path& map, const std::filesystem::path
 // Returns whether arguments name more than one map: several, or a folder.
 bool names_many(const std::vector<std::string>& arguments);
 
-// Returns the maps that arguments name; a folder stands for the images in it, by name. Throws InputError for
-// a folder without images, and for two maps of one name, whose results would be the same files.
+// Returns the maps that arguments name; a folder stands for the images in it that are no results, or where
+// all are, for its bakes. Throws InputError for a folder without images, and for two maps of one name, whose
+// results would be the same files.
 std::vector<std::filesystem::path> find_maps(const std::vector<std::string>& arguments);
 
 // Throws InputError where a setting that belongs to one map is given with many.
 void refuse_settings_of_one_map(const Invocation& invocation, std::initializer_list<const char*> names);
 
-// Returns whether `bake` is a whole bake by this version, of this map with these settings.
-bool is_done(const std::filesystem::path& bake, const MapSettings& map, const BakeSettings& settings);
+// Returns what a bake by this version records of its map and settings.
+Provenance wanted_record(const MapSettings& map, const BakeSettings& settings);
+
+// Returns whether an image is there and records everything that is wanted.
+bool records(const std::filesystem::path& image, const Provenance& wanted);
 
 // Calls `run_one` for each map and prints its line; bad maps are named where they fail and at the end.
 // Returns 0; 1 where a check failed; 2 where a map was bad. Throws Cancelled.

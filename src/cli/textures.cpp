@@ -8,6 +8,7 @@
 
 #include "bake/bake.h"
 #include "bake/record.h"
+#include "cli/batch.h"
 #include "cli/options/bake_options.h"
 #include "cli/print/bake.h"
 #include "cli/print/warnings.h"
@@ -29,6 +30,7 @@ namespace fs = std::filesystem;
 constexpr const char* kNormalMapY = "normals-y";
 
 struct TexturesOptions : BakeOptions {
+  std::vector<std::string> inputs;
   TextureSettings textures;
   fs::path folder;
   std::vector<std::string> bake_option_names;
@@ -57,17 +59,26 @@ void check_outputs(const TexturesOptions& options, const std::string& name) {
   }
 }
 
-std::vector<WrittenTexture> textures_of_bake(const TexturesOptions& options, const std::string& name,
-                                             const Invocation& invocation) {
+void refuse_options_of_a_bake(const TexturesOptions& options, const Invocation& invocation) {
   for (const std::string& option : options.bake_option_names)
     if (invocation.given(option))
       throw InputError(
           fmt::format("--{}: is of a bake to be made, but {} is made, expected a height map with it", option,
                       options.map.map.string()));
-  const BakeFile file = read_bake(options.map.map);
-  Provenance provenance = make_provenance(invocation.context.command, options.map.map);
-  for (const auto& [key, value] : file.provenance.items())
+}
+
+// Returns how the textures of a bake are made. of_bake: how the bake was.
+Provenance record_of_bake(const fs::path& bake, const Provenance& of_bake, std::string_view command) {
+  Provenance provenance = make_provenance(command, bake);
+  for (const auto& [key, value] : of_bake.items())
     provenance[provenance.contains(key) || key == "input_path" ? "bake_" + key : key] = value;
+  return provenance;
+}
+
+std::vector<WrittenTexture> textures_of_bake(const TexturesOptions& options, const std::string& name,
+                                             const Invocation& invocation) {
+  const BakeFile file = read_bake(options.map.map);
+  const Provenance provenance = record_of_bake(options.map.map, file.provenance, invocation.context.command);
   return with_file_context(options.map.map, [&] {
     return make_textures(file.bake, provenance, options.textures, options.folder, name);
   });
@@ -85,8 +96,7 @@ void refuse_normal_map_without_y(const TexturesOptions& options) {
         fmt::format("{{{}}}: there is no normal map, expected {{normals}} FILE with it", kNormalMapY));
 }
 
-std::vector<WrittenTexture> textures_of_map(TexturesOptions& options, const std::string& name,
-                                            const Invocation& invocation) {
+void resolve_bake_of_map(TexturesOptions& options, const Invocation& invocation) {
   bake_only_what_textures_need(options.textures, options.bake);
   refuse_normal_map_without_y(options);
   resolve(options, {invocation.context,
@@ -96,6 +106,10 @@ std::vector<WrittenTexture> textures_of_map(TexturesOptions& options, const std:
                     },
                     invocation.json});
   options.bake.spill_folder = options.folder;
+}
+
+std::vector<WrittenTexture> textures_of_map(const TexturesOptions& options, const std::string& name,
+                                            const Invocation& invocation) {
   const LoadedMap map = load_map(options.map, options.bake.normal_length);
   const BakeResult result =
       with_file_context(options.map.map, [&] { return bake(map, options.bake, invocation.context); });
@@ -104,31 +118,83 @@ std::vector<WrittenTexture> textures_of_map(TexturesOptions& options, const std:
                        options.textures, options.folder, name);
 }
 
-int run_textures(TexturesOptions& options, const Invocation& invocation) {
-  resolve_textures(options.textures);
+// Returns whether every texture is there as it would be made again. options: resolved.
+bool were_made(const TexturesOptions& options, bool baked, const std::string& name) {
+  Provenance wanted;
+  if (baked) {
+    wanted = record_of_bake(options.map.map, read_image_header(options.map.map).provenance, "");
+    for (const char* elsewhere : {"command", "bake_command", "bake_input_path", "normals_path"})
+      wanted.erase(elsewhere);
+  } else {
+    wanted = wanted_record(options.map, options.bake);
+  }
+  const std::vector<fs::path> paths = texture_paths(options.textures, options.folder, name);
+  for (size_t t = 0; t < paths.size(); ++t) {
+    record_texture_settings(options.textures, options.textures.kinds[t], wanted);
+    if (!records(paths[t], wanted)) return false;
+  }
+  return true;
+}
+
+enum class Again { kSkip, kMake };
+
+// Makes the textures of one bake or map. options: its textures resolved.
+MapOutcome make_one(TexturesOptions options, Again again, const Invocation& invocation) {
   const bool baked = is_bake(options.map.map);
   const std::string name = options.map.map.stem().string();
-  const ResultFolder folder(options.folder);
   check_outputs(options, name);
+  if (baked)
+    refuse_options_of_a_bake(options, invocation);
+  else
+    resolve_bake_of_map(options, invocation);
+  if (again == Again::kSkip && were_made(options, baked, name))
+    return skipped(options.map.map, options.folder);
   const std::vector<WrittenTexture> textures =
       baked ? textures_of_bake(options, name, invocation) : textures_of_map(options, name, invocation);
-  invocation.print({{"output", options.folder.string()},
-                    {"input", options.map.map.string()},
-                    {"textures", json_from_textures(textures, options.textures)}},
-                   describe_textures(textures, options.textures, options.folder));
+  return {{{"output", options.folder.string()},
+           {"input", options.map.map.string()},
+           {"textures", json_from_textures(textures, options.textures)}},
+          describe_textures(textures, options.textures, options.folder),
+          line_of_textures(textures, options.map.map, options.folder),
+          0};
+}
+
+int make_many(TexturesOptions& options, const Invocation& invocation) {
+  refuse_settings_of_one_map(invocation, {"normals"});
+  for (const std::string& packed : {options.textures.roughness, options.textures.metallic})
+    if (std::error_code not_there; fs::is_regular_file(packed, not_there))
+      throw InputError(packed + ": is of one map, expected a number for several maps");
+  const std::vector<fs::path> inputs = find_maps(options.inputs);
+  const ResultFolder folder(options.folder);
+  return run_over_maps(inputs, invocation, [&](const fs::path& input) {
+    TexturesOptions of_input = options;
+    of_input.map.map = input;
+    return make_one(of_input, Again::kSkip, invocation);
+  });
+}
+
+int run_textures(TexturesOptions& options, const Invocation& invocation) {
+  resolve_textures(options.textures);
+  if (names_many(options.inputs)) return make_many(options, invocation);
+  options.map.map = options.inputs[0];
+  const ResultFolder folder(options.folder);
+  const MapOutcome outcome = make_one(options, Again::kMake, invocation);
+  invocation.print(outcome.json, outcome.text);
   return 0;
 }
 
 // The options of a bake but its outputs and links, which follow from the textures.
 std::vector<Field> options_of_bake(TexturesOptions& options) {
   std::vector<Field> fields = bake_options(options);
+  take_several_maps(fields, options.inputs);
   std::erase_if(fields, [](const Field& field) { return field.name == "outputs" || field.name == "links"; });
   for (Field& field : fields) {
     if (field.name == "MAP") {
       field.name = "INPUT";
       field.help =
           "a bake (EXR as 'hemibake bake' writes it), or a height map, which is baked first with the "
-          "options below: only what the textures need";
+          "options below: only what the textures need; several, or a folder of them: bad ones are named, "
+          "done ones skipped";
       continue;
     }
     if (field.name == "normal-y") field.name = kNormalMapY;

@@ -201,6 +201,13 @@ std::optional<int> choose_channel(const std::vector<std::string>& channels, cons
   return green ? green : find_channel(channels, "Y");
 }
 
+// Returns what a TIFF of this program says, in the one text that the format has; null for any other.
+Provenance provenance_in_description(const OIIO::ImageSpec& spec) {
+  const std::string text(spec.get_string_attribute("ImageDescription"));
+  Provenance provenance = Provenance::parse(text, nullptr, false);
+  return provenance.is_object() && provenance.contains("texture") ? provenance : Provenance();
+}
+
 }  // namespace
 
 ImageHeader read_image_header(const fs::path& path) {
@@ -210,6 +217,7 @@ ImageHeader read_image_header(const fs::path& path) {
   const std::string text(spec.get_string_attribute("hemibake:provenance"));
   header.provenance = Provenance::parse(text.empty() ? "null" : text, nullptr, false);
   if (header.provenance.is_discarded()) reader.refuse_image("attribute hemibake:provenance is not JSON");
+  if (text.empty()) header.provenance = provenance_in_description(spec);
   return header;
 }
 

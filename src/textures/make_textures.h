@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "io/provenance.h"
+#include "textures/bounce_map_loss.h"
 #include "textures/settings.h"
 #include "transport/baked_planes.h"
 
@@ -21,7 +23,11 @@ struct WrittenTexture {
   std::filesystem::path path;
   std::string holds;  // in one line
   std::vector<ChannelRange> channels;
+  std::optional<BounceMapLoss> bounce_map;  // of the texture that makes one whole; not of dithered ones
 };
+
+// Records everything of the settings that decides the bytes of one texture. settings: resolved.
+void record_texture_settings(const TextureSettings& settings, TextureKind kind, Provenance& provenance);
 
 // Writes every texture of the settings, all or none. bake: with the planes of bake_only_what_textures_need
 // (planes.h), or more. provenance: how the bake was made. settings: resolved. name: what the files' names

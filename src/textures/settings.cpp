@@ -42,9 +42,17 @@ Value joined_by_commas(Value value) {
 Field texture_field(std::string name, Value value, std::string help) {
   Field field;
   field.name = std::move(name);
+  field.key = "texture_" + field.name;
+  std::ranges::replace(field.key, '-', '_');
   field.group = "Textures";
   field.value = std::move(value);
   field.help = std::move(help);
+  return field;
+}
+
+// Keeps a field out of the record: what it sets is recorded otherwise, or differs from texture to texture.
+Field unrecorded(Field field) {
+  field.key.clear();
   return field;
 }
 
@@ -111,13 +119,14 @@ std::vector<Field> texture_fields(TextureSettings& s) {
   Value albedo = numbers(s.albedo, 3, 0, 1);
   Value suffixes = texts(s.suffix_words);
   return {
-      texture_field(
+      unrecorded(texture_field(
           "maps", joined_by_commas(choices(s.kinds, unpacked)),
           "separated by commas; default: visibility (unless packed), bent, normal. Engines mean "
           "visibility (cosine-weighted) by AO; ao is the uniform fraction; bounce is visibility with all "
-          "bounces at one albedo; bounce-map has both, in R and G"),
-      texture_field("engine", choice(s.engine, {"substance", "unreal", "unity", "godot", "gltf"}),
-                    "suffixes, green channel and packing as it takes them; options given too win"),
+          "bounces at one albedo; bounce-map has both, in R and G")),
+      unrecorded(
+          texture_field("engine", choice(s.engine, {"substance", "unreal", "unity", "godot", "gltf"}),
+                        "suffixes, green channel and packing as it takes them; options given too win")),
       texture_field("format", choice(s.coding.format, format_names()),
                     "PNG of 16 or 8 bits, EXR or TIFF of 32-bit floats; all linear, 0..1"),
       texture_field("dither", flag(s.coding.dither), "with png8: dither, so that means keep their fractions"),
@@ -143,8 +152,8 @@ std::vector<Field> texture_fields(TextureSettings& s) {
       shown_as(texture_field("metallic", text(s.metallic),
                              "packed: a number 0..1, or an image of the map's size [0]"),
                "VALUE|FILE"),
-      shown_as(texture_field("suffix", joined_by_commas(suffixes),
-                             "ends of the files' names instead of _visibility, _bent, ..."),
+      shown_as(unrecorded(texture_field("suffix", joined_by_commas(suffixes),
+                                        "ends of the files' names instead of _visibility, _bent, ...")),
                "TEXTURE=SUFFIX[,...]"),
   };
 }

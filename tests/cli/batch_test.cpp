@@ -1,7 +1,8 @@
-// Many maps in one call of `hemibake bake` and `hemibake run`.
+// Many maps in one call of `hemibake bake`, `run` and `textures`.
 #include <fstream>
 
 #include "cli/run_hemibake.h"
+#include "io/image_io.h"
 
 namespace hemibake {
 namespace {
@@ -67,6 +68,48 @@ TEST_F(Batch, RunMakesAFolderAMapThatFitTakes) {
   run_well("fit out -o fit.json --model visibility");
 }
 
+TEST_F(Batch, TexturesOfEachMapAreThoseOfTheMapByItself) {
+  run_well("textures maps -o out --maps ao --rays 8");
+  run_well("textures maps/b.exr -o one --maps ao --rays 8");
+  const ImageHeader header = read_image_header(folder_ / "out/b_ao.png");
+  EXPECT_EQ(header.width, 12);
+  std::vector<float> many(120), one(120);
+  for (const auto& [file, values] : {std::pair("out/b_ao.png", &many), std::pair("one/b_ao.png", &one)}) {
+    const MutablePlane plane{"Y", values->data()};
+    read_planes(folder_ / file, 12, 10, {&plane, 1});
+  }
+  EXPECT_EQ(many, one);
+}
+
+TEST_F(Batch, TexturesThatAreDoneAreSkippedUnlessSomethingChanged) {
+  const auto skipped = [&](const std::string& arguments) {
+    const CommandResult result = run("textures " + arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.standard_error;
+    size_t count = 0;
+    for (size_t at = 0; (at = result.standard_output.find("done before", at)) != std::string::npos; ++at)
+      ++count;
+    return count;
+  };
+  for (const char* format : {"png8", "png16", "exr", "tif"}) {
+    const std::string call = "maps -o out --maps visibility --rays 8 --format " + std::string(format);
+    EXPECT_EQ(skipped(call), 0u);
+    EXPECT_EQ(skipped(call), 3u) << format;
+  }
+  EXPECT_EQ(skipped("maps -o out --maps visibility,ao --rays 8 --format tif"), 0u);
+  EXPECT_EQ(skipped("maps -o out --maps visibility,ao --rays 4 --format tif"), 0u);
+  write_map("maps/a.exr", SyntheticKind::kShapes, 12, 12);
+  EXPECT_EQ(skipped("maps -o out --maps visibility,ao --rays 4 --format tif"), 2u);
+}
+
+TEST_F(Batch, TexturesOfAFolderOfBakesLieBesideThem) {
+  run_well("bake maps -o out --rays 8 --bounces 3");
+  const std::string call = "textures out -o out --maps irradiance --format exr --albedo ";
+  EXPECT_THAT(run(call + "0.3").standard_output, HasSubstr("[3/3] out/d.exr ->"));
+  EXPECT_THAT(run(call + "0.3").standard_output, HasSubstr("[3/3] out/d.exr: done before"));
+  EXPECT_THAT(run(call + "0.4").standard_output, HasSubstr("[3/3] out/d.exr ->"));
+  EXPECT_EQ(run("textures out -o out --rays 8").exit_code, 2);
+}
+
 TEST_F(Batch, RefusesWhatIsOfOneMap) {
   std::filesystem::create_directory(folder_ / "empty");
   std::filesystem::create_directory(folder_ / "other");
@@ -75,6 +118,12 @@ TEST_F(Batch, RefusesWhatIsOfOneMap) {
   expect_refusal("bake maps other/a.exr -o out", HasSubstr("has the name of"));
   expect_refusal("bake maps -o out --links l.h5", HasSubstr("--links: is of one map"));
   expect_refusal("bake maps", HasSubstr("--output"));
+  expect_refusal("textures empty -o out", HasSubstr("empty: a folder without images"));
+  expect_refusal("textures maps other/a.exr -o out", HasSubstr("has the name of"));
+  expect_refusal("textures maps -o out --normals n.png --normals-y up",
+                 HasSubstr("--normals: is of one map"));
+  expect_refusal("textures maps -o out --engine unreal --roughness other/a.exr",
+                 HasSubstr("other/a.exr: is of one map"));
 }
 
 }  // namespace
