@@ -76,7 +76,8 @@ std::vector<Field> render_fields(RenderOptions& options) {
                        "LINKS.h5"),
               option("model", choice(options.model, model_kind_names()),
                      "the model that shades. From V, the cosine-weighted AO: visibility, jimenez; from V and "
-                     "the uniform AO: visibility-ao; from the planes visibility and bounce: bounce-map; from "
+                     "the uniform AO: visibility-ao, visibility-ao-mean; from V and the normal: "
+                     "visibility-normal; from the planes visibility and bounce: bounce-map; from "
                      "the uniform AO: bounded, published"),
               option("constants", choice(options.constants, {"fit", "none"}),
                      "of the bake's own curves or of --fit; or those that a model has without fits, as in "

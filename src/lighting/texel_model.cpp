@@ -8,15 +8,21 @@
 namespace hemibake {
 namespace {
 
+template <class Model, class... Others>
+constexpr bool kIsOneOf = (std::is_same_v<Model, Others> || ...);
 template <class Model>
-constexpr bool kTakesAo = std::is_same_v<Model, BoundedModel> || std::is_same_v<Model, GuardedModel> ||
-                          std::is_same_v<Model, VisibilityAoModel>;
+constexpr bool kTakesAo = kIsOneOf<Model, BoundedModel, GuardedModel, VisibilityAoModel, MeanEscapeModel>;
 template <class Model>
-constexpr bool kTakesVisibility =
-    !std::is_same_v<Model, BoundedModel> && !std::is_same_v<Model, GuardedModel>;
+constexpr bool kTakesVisibility = !kIsOneOf<Model, BoundedModel, GuardedModel>;
 
 double total(const VisibilityAoModel& m, const TexelInputs& at, double albedo) {
   return m.total(at.visibility, at.ao, albedo);
+}
+double total(const MeanEscapeModel& m, const TexelInputs& at, double albedo) {
+  return m.total(at.visibility, at.ao, albedo);
+}
+double total(const VisibilityNormalModel& m, const TexelInputs& at, double albedo) {
+  return m.total(at.visibility, at.normal_z, albedo);
 }
 double total(const BounceMapModel& m, const TexelInputs& at, double albedo) {
   return m.total(at.visibility, at.bounce, albedo);
@@ -40,6 +46,12 @@ std::optional<BounceSplit> split(const VisibilityModel& m, const TexelInputs& at
 std::optional<BounceSplit> split(const VisibilityAoModel& m, const TexelInputs& at) {
   return BounceSplit{at.visibility, m.escape(at.ao)};
 }
+std::optional<BounceSplit> split(const MeanEscapeModel& m, const TexelInputs& at) {
+  return BounceSplit{at.visibility, m.escape(at.ao)};
+}
+std::optional<BounceSplit> split(const VisibilityNormalModel& m, const TexelInputs& at) {
+  return BounceSplit{at.visibility, m.escape(at.visibility, at.normal_z)};
+}
 std::optional<BounceSplit> split(const BounceMapModel& m, const TexelInputs& at) {
   return BounceSplit{at.visibility, escape_of(m, at)};
 }
@@ -58,6 +70,8 @@ TexelInputs texel_inputs(const Bake& bake, size_t texel) {
     inputs.ao = std::clamp(static_cast<double>(bake.visible_fraction[texel]), 0.0, 1.0);
   if (has_visibility(bake)) inputs.visibility = visibility_at(bake, texel);
   if (!bake.bounce.empty()) inputs.bounce = std::clamp(static_cast<double>(bake.bounce[texel]), 0.0, 1.0);
+  if (!bake.normals.empty())
+    inputs.normal_z = std::clamp(static_cast<double>(bake.normals[texel].z), 0.0, 1.0);
   return inputs;
 }
 
@@ -67,6 +81,7 @@ std::string missing_plane(const AnyModel& model, const Bake& bake) {
         if (kTakesAo<Model> && bake.visible_fraction.empty()) return "ao";
         if (kTakesVisibility<Model> && !has_visibility(bake)) return "visibility";
         if (std::is_same_v<Model, BounceMapModel> && bake.bounce.empty()) return "bounce";
+        if (std::is_same_v<Model, VisibilityNormalModel> && bake.normals.empty()) return "normal";
         return "";
       },
       model);

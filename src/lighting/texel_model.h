@@ -14,6 +14,7 @@ struct TexelInputs {
   double ao = 0;          // α
   double visibility = 0;  // V
   double bounce = 0;      // E/π at the albedo of the bounce map
+  double normal_z = 0;    // of the shading normal
 };
 
 // Returns whether a bake gives V: by its plane `visibility`, or by E₀.
@@ -21,7 +22,8 @@ bool has_visibility(const Bake& bake);
 
 TexelInputs texel_inputs(const Bake& bake, size_t texel);
 
-// Returns the name of a plane that the model takes and the bake lacks: ao, visibility or bounce; or nothing.
+// Returns the name of a plane that the model takes and the bake lacks: ao, visibility, bounce or normal; or
+// nothing.
 std::string missing_plane(const AnyModel& model, const Bake& bake);
 
 // Returns E/π over all bounces. albedo: ρ, 0..1.

@@ -82,7 +82,9 @@ std::pair<Grid<glm::vec3>, Grid<glm::vec3>> saturation_bands(const ShadedScene& 
 void light_image(const ShadedScene& scene, const std::string& missing,
                  const std::function<Grid<glm::vec3>()>& shade, SceneImage& image) {
   if (!missing.empty())
-    image.missing = "the bake holds no " + (missing == "bounce" ? "bounce map" : missing);
+    image.missing = "the bake holds no " + (missing == "bounce"   ? "bounce map"
+                                            : missing == "normal" ? "normals"
+                                                                  : missing);
   else if (scene.sky.empty())
     image.missing = "the light of this sky needs normals, and the bake holds none";
   else

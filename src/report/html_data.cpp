@@ -96,7 +96,7 @@ BinTotals totals_of(const CurveBin& bin) {
 std::optional<Prediction> prediction_of(const AnyModel& model) {
   if (std::holds_alternative<BounceMapModel>(model)) return std::nullopt;
   return [&model](double ao, double visibility, double albedo) {
-    return model_irradiance(model, {ao, visibility, 0}, albedo);
+    return model_irradiance(model, {ao, visibility}, albedo);
   };
 }
 

@@ -114,6 +114,8 @@ Json constants_of(const GuardedModel& m) {
 }
 Json constants_of(const VisibilityModel& m) { return {{"dark", m.dark}, {"open", m.open}}; }
 Json constants_of(const VisibilityAoModel& m) { return {{"dark", m.dark}, {"open", m.open}}; }
+Json constants_of(const VisibilityNormalModel&) { return Json::object(); }
+Json constants_of(const MeanEscapeModel& m) { return {{"mean_escape", m.mean_escape}}; }
 Json constants_of(const BounceMapModel& m) { return {{"bounce_albedo", m.bounce_albedo}}; }
 Json constants_of(const JimenezModel& m) { return {{"parameters", m.parameters}}; }
 

@@ -163,6 +163,17 @@ TEST_F(Render, ModelsOfVisibilityAndTheBounceMap) {
                [&](size_t i, double rho) { return escaping(i, double{bake.visibility[i]}, rho); });
   expect_light("--model visibility-ao --constants none",
                [&](size_t i, double rho) { return escaping(i, double{bake.visible_fraction[i]}, rho); });
+  expect_light("--model visibility-normal", [&](size_t i, double rho) {
+    return escaping(i, std::min(1.0, double{bake.visibility[i]} * (1.3 - 0.6 * double{bake.normals[i].z})),
+                    rho);
+  });
+  double sum = 0, squares = 0;
+  for (const float v : bake.visibility.values) sum += double{v}, squares += double{v} * double{v};
+  const double m = (sum - squares) / (static_cast<double>(bake.visibility.size()) - sum);
+  expect_light("--model visibility-ao-mean", [&](size_t i, double rho) {
+    const double ao = bake.visible_fraction[i];
+    return escaping(i, ao * (1 + m) / (1 + ao), rho);
+  });
   // The g with which the light at .9 is that of the map.
   expect_light("--model bounce-map", [&](size_t i, double rho) {
     const double blocked = 1 - double{bake.visibility[i]}, missing = 1 - double{bake.bounce[i]};

@@ -13,8 +13,11 @@ namespace {
 constexpr std::array kUnitValues = {0.0, 1e-6, 0.2, 0.5, 0.9, 1.0};
 
 std::vector<AnyModel> all_models() {
-  return {VisibilityModel{},   VisibilityModel{0.1, 0.8}, VisibilityAoModel{}, VisibilityAoModel{0.1, 0.8},
-          BounceMapModel{0.9}, BounceMapModel{0.5},       BoundedModel{},      GuardedModel{},
+  return {VisibilityModel{},    VisibilityModel{0.1, 0.8},
+          VisibilityAoModel{},  VisibilityAoModel{0.1, 0.8},
+          MeanEscapeModel{0.4}, VisibilityNormalModel{},
+          BounceMapModel{0.9},  BounceMapModel{0.5},
+          BoundedModel{},       GuardedModel{},
           JimenezModel{}};
 }
 
@@ -22,17 +25,21 @@ template <class Check>
 void for_each_input(const Check& check) {
   for (const double ao : kUnitValues)
     for (const double visibility : kUnitValues)
-      for (const double bounce : kUnitValues) check(TexelInputs{ao, visibility, bounce});
+      for (const double bounce : kUnitValues) check(TexelInputs{ao, visibility, bounce, 1 - ao});
 }
 
 TEST(TexelModel, EachTakesItsOwnAo) {
-  const TexelInputs at{0.3, 0.45, 0.8};
+  const TexelInputs at{0.3, 0.45, 0.8, 0.7};
   EXPECT_EQ(model_irradiance(BoundedModel{}, at, 0.6), BoundedModel{}.total(0.3, 0.6));
   EXPECT_EQ(model_irradiance(GuardedModel{}, at, 0.6), GuardedModel{}.total(0.3, 0.6));
   EXPECT_EQ(model_irradiance(JimenezModel{}, at, 0.6), JimenezModel{}.total(0.45, 0.6));
   // 1 − (1 − V)(1 − ρ)/(1 − ρ + ρg).
   EXPECT_DOUBLE_EQ(model_irradiance(VisibilityModel{}, at, 0.6), 1 - 0.55 * 0.4 / (0.4 + 0.6 * 0.45));
   EXPECT_DOUBLE_EQ(model_irradiance(VisibilityAoModel{}, at, 0.6), 1 - 0.55 * 0.4 / (0.4 + 0.6 * 0.3));
+  EXPECT_DOUBLE_EQ(model_irradiance(MeanEscapeModel{0.5}, at, 0.6),
+                   1 - 0.55 * 0.4 / (0.4 + 0.6 * 0.3 * 1.5 / 1.3));
+  EXPECT_DOUBLE_EQ(model_irradiance(VisibilityNormalModel{}, at, 0.6),
+                   1 - 0.55 * 0.4 / (0.4 + 0.6 * 0.45 * (1.3 - 0.6 * 0.7)));
   EXPECT_DOUBLE_EQ(model_irradiance(BounceMapModel{0.6}, at, 0.6), 0.8);
 }
 
@@ -95,6 +102,8 @@ TEST(TexelModel, VisibilityOfOldBakesIsTheirDirectLight) {
   EXPECT_EQ(at.visibility, 0.5);
   EXPECT_EQ(at.ao, 0.125);
   EXPECT_EQ(at.bounce, 0.75);
+  EXPECT_EQ(missing_plane(VisibilityNormalModel{}, bake), "normal");
+  bake.normals = Grid<glm::vec3>(2, 1, glm::vec3(0, 0, 1));
   for (const AnyModel& model : all_models()) EXPECT_EQ(missing_plane(model, bake), "");
 }
 
