@@ -13,6 +13,7 @@
 #include "cli/options/bake_options.h"
 #include "cli/print/bake.h"
 #include "cli/print/replay.h"
+#include "cli/print/textures.h"
 #include "cli/print/warnings.h"
 #include "cli/result_folder.h"
 #include "core/error.h"
@@ -64,8 +65,11 @@ MapOutcome bake_one(BakeCommandOptions options, const Invocation& invocation) {
   write_results(result, provenance, options.output, options.links);
   print_warnings(options.map.map.string(), warnings_of(result));
   nlohmann::ordered_json json = json_from_bake(result, provenance);
+  const std::optional<BounceMapLoss> loss = bounce_map_loss(result.planes);
+  json["bounce_map"] = json_from_bounce_map(loss);
   json["output"] = options.output.string();
-  return {json, describe_bake(options, result), line_of_bake(options.map, result, options.output), 0};
+  return {json, describe_bake(options, result) + describe_bounce_map(loss),
+          line_of_bake(options.map, result, options.output), 0};
 }
 
 int bake_many(const BakeCommandOptions& options, const Invocation& invocation) {

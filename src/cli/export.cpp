@@ -56,6 +56,8 @@ struct ExportOptions {
   std::string constants = "fit";
   std::string prefix;
   std::optional<double> bounce_albedo;
+  std::optional<double> mean_escape;
+  std::string map;
 };
 
 constexpr const char* kNoFits = "none";
@@ -114,6 +116,57 @@ void set_bounce_albedo(AnyModel& model, const ExportOptions& options, const Prov
   }
 }
 
+// Throws InputError where the fits have no map that --map names, or none whose m is known.
+std::vector<MapEscape> wanted_escapes(const ExportOptions& options, const FitFile& file) {
+  std::vector<MapEscape> known, wanted;
+  std::vector<std::string> names;
+  for (const MapEscape& map : file.escapes) {
+    if (!map.mean_escape) continue;
+    known.push_back(map);
+    names.push_back(map.map);
+    if (map.map == options.map) wanted.push_back(map);
+  }
+  if (known.empty() || options.constants == kNoFits)
+    throw InputError(
+        fmt::format("{}: no mean escape share of a map, expected FIT.json as 'hemibake fit' writes it of a "
+                    "bake or of curves with counts, or --mean-escape",
+                    options.fits));
+  if (options.map.empty()) return known;
+  if (wanted.empty())
+    throw InputError(fmt::format("--map: no map '{}' in {}, expected one of {}", options.map, options.fits,
+                                 fmt::join(names, ", ")));
+  return wanted;
+}
+
+// Sets the mean escape share: that of the option, else that of the fits' map, else the mean of their maps.
+// Returns a line that says which.
+std::string set_mean_escape(MeanEscapeModel& model, const ExportOptions& options, const FitFile& file) {
+  if (options.mean_escape) {
+    if (!options.map.empty())
+      throw InputError("--map: --mean-escape gives the number already, expected one of them");
+    model.mean_escape = *options.mean_escape;
+    return "mean_escape: as given.";
+  }
+  const std::vector<MapEscape> maps = wanted_escapes(options, file);
+  std::vector<std::string> names;
+  model.mean_escape = 0;
+  for (const MapEscape& map : maps) {
+    names.push_back(map.map);
+    model.mean_escape += *map.mean_escape / static_cast<double>(maps.size());
+  }
+  return fmt::format("mean_escape: {}{}.", maps.size() > 1 ? "the mean of " : "of ", fmt::join(names, ", "));
+}
+
+// Throws InputError where an option is given that only another model has.
+void check_mean_escape_options(const ExportOptions& options, ModelKind kind) {
+  if (kind == ModelKind::kMeanEscape) return;
+  for (const auto& [name, given] : {std::pair("--mean-escape", options.mean_escape.has_value()),
+                                    std::pair("--map", !options.map.empty())})
+    if (given)
+      throw InputError(fmt::format("{}: the model {} takes none, expected --model visibility-ao-mean", name,
+                                   options.model));
+}
+
 struct Export {
   AnyModel model;
   std::vector<std::string> origin;
@@ -123,8 +176,10 @@ struct Export {
 Export make_export(const ExportOptions& options) {
   const ModelKind kind = model_kind_from_string(options.model);
   const FitFile file = options.fits == kNoFits ? FitFile{} : read_fits(options.fits);
+  check_mean_escape_options(options, kind);
   // The escape α needs no constants: those of a fit, if there is one, are a refinement.
-  const bool optional = kind == ModelKind::kVisibilityAo && !has_model(file.fits, kind);
+  const bool optional = kind == ModelKind::kVisibilityNormal ||
+                        (kind == ModelKind::kVisibilityAo && !has_model(file.fits, kind));
   Export result;
   if (options.fits == kNoFits || options.constants == kNoFits || optional) {
     const std::optional<AnyModel> model = model_without_fits(kind);
@@ -139,6 +194,8 @@ Export make_export(const ExportOptions& options) {
     });
   }
   set_bounce_albedo(result.model, options, file.provenance);
+  if (auto* model = std::get_if<MeanEscapeModel>(&result.model))
+    result.origin.push_back(set_mean_escape(*model, options, file));
   return result;
 }
 
@@ -176,10 +233,10 @@ CommandSetup setup_export() {
              "source text in a language, or csv: a table over AO and albedo (default: by the file's name)"),
       option(
           "model", choice(options->model, model_kind_names()),
-          "visibility: all light from V, the cosine-weighted AO; visibility-ao: from V and the uniform AO; "
-          "bounce-map: from two textures; of the uniform AO: bounded, or published (the formulas of 2018 "
-          "with "
-          "F0 and tau cut to 0..1); jimenez: their cubic of V"),
+          "visibility: all light from V, the cosine-weighted AO; visibility-normal: from V and the z of the "
+          "normal; visibility-ao: from V and the uniform AO; visibility-ao-mean: from these and the map's "
+          "mean escape share; bounce-map: from two textures; of the uniform AO: bounded, or published (the "
+          "formulas of 2018 with F0 and tau cut to 0..1); jimenez: their cubic of V"),
       option("constants", choice(options->constants, {"fit", kNoFits}),
              "of FIT, or none: those that a model has without fits (visibility: escape = V; visibility-ao: "
              "escape = AO; published: of 2018; jimenez: of 2016)"),
@@ -187,6 +244,10 @@ CommandSetup setup_export() {
           "bounce-albedo", number(options->bounce_albedo, 0.01, 0.999),
           "the albedo that the second texture of bounce-map was baked with (default: as FIT's bake recorded "
           "it, else 0.9)"),
+      option("mean-escape", number(options->mean_escape, 0, 1),
+             "the map's m of visibility-ao-mean, (<V> - <V^2>)/(1 - <V>) (default: of the map in FIT; of "
+             "several their mean)"),
+      option("map", text(options->map), "whose m visibility-ao-mean takes, of several maps in FIT"),
       option(
           "prefix", text(options->prefix),
           "begins every name (default: constants and helpers begin with hemibake_, functions with nothing)"),

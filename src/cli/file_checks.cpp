@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -45,7 +46,7 @@ void check_numbers(const NamedFit& named, Checks& checks) {
     // Any finite value passes: the distance of NaN and infinity to 0 is not below infinity.
     const bool finite = std::isfinite(parameter.value) && std::isfinite(parameter.standard_error.value_or(0));
     checks.push_back({fmt::format("{}: {} and its error are numbers", named.name, parameter.name),
-                      finite ? 1.0 : 0.0, 1, 0, ""});
+                      finite ? 1.0 : 0.0, 1, 0, parameter.on_bound ? "on its bound" : ""});
   }
   checks.push_back(
       {named.name + ": rms of the fit", named.fit.rms, 0, std::numeric_limits<double>::infinity(), ""});
@@ -72,6 +73,31 @@ void append_model_checks(const char* name, Checks model_checks, bool judged, Che
   }
 }
 
+// Returns the models of the least and the largest m of the file's maps; those of all others lie in between.
+std::vector<MeanEscapeModel> mean_escape_models(const FitFile& file) {
+  std::vector<MeanEscapeModel> models;
+  for (const MapEscape& map : file.escapes)
+    if (map.mean_escape) models.push_back({*map.mean_escape});
+  if (models.size() < 2) return models;
+  const auto [least, largest] = std::ranges::minmax_element(models, {}, &MeanEscapeModel::mean_escape);
+  return {*least, *largest};
+}
+
+// Checks the models of V and of V and α that `export` makes of the file. Throws InputError where a constant
+// is outside its range.
+void append_escape_checks(const FitFile& file, double tolerance, Checks& checks) {
+  constexpr ModelKind kOfV = ModelKind::kVisibility, kOfBoth = ModelKind::kVisibilityAo;
+  const auto append = [&](const std::string& name, const auto& model) {
+    append_model_checks(name.c_str(), check_model(model, tolerance), true, checks);
+  };
+  if (has_model(file.fits, kOfV))
+    append("visibility", std::get<VisibilityModel>(any_fitted_model(file.fits, kOfV)));
+  if (has_model(file.fits, kOfBoth))
+    append("visibility-ao", std::get<VisibilityAoModel>(any_fitted_model(file.fits, kOfBoth)));
+  for (const MeanEscapeModel& model : mean_escape_models(file))
+    append(fmt::format("visibility-ao-mean, m = {:.3g}", model.mean_escape), model);
+}
+
 // The bounded model is what export writes: where it is there, it is judged, and the published one, which is
 // 0/0 at α = 1 and may have poles before, is shown.
 Checks checks_of_fit(const FitFile& file, double tolerance) {
@@ -90,6 +116,7 @@ Checks checks_of_fit(const FitFile& file, double tolerance) {
         check_model(Mayaux2018Model{published["k"], published["e"], published["A"], published["B"]},
                     tolerance),
         bounded.empty(), checks);
+  append_escape_checks(file, tolerance, checks);
   return checks;
 }
 
@@ -122,7 +149,11 @@ Checks checks_of_file(const std::filesystem::path& path, std::optional<double> t
   }
   if (extension == ".csv")
     return check_curves(read_curves(path), tolerance.value_or(kDefaultTolerance), tolerance.has_value());
-  if (extension == ".json") return checks_of_fit(read_fits(path), tolerance.value_or(kDefaultTolerance));
+  if (extension == ".json") {
+    const FitFile file = read_fits(path);
+    return with_file_context(path,
+                             [&] { return checks_of_fit(file, tolerance.value_or(kDefaultTolerance)); });
+  }
   throw InputError(path.string() +
                    ": nothing to check by that name, expected a bake (.exr), curves (.csv) or fits (.json)");
 }

@@ -59,15 +59,15 @@ nlohmann::ordered_json json_from_light(const RenderedScene& rendered) {
 nlohmann::ordered_json errors_of(const SceneImages& shaded) {
   nlohmann::ordered_json errors = nlohmann::ordered_json::object();
   if (shaded.truth.empty()) return errors;
-  if (!shaded.ao_only.empty())
-    errors["ao_only"] = json_from_error(picture_error(shaded.ao_only, shaded.truth));
-  if (!shaded.model.empty()) errors["model"] = json_from_error(picture_error(shaded.model, shaded.truth));
+  for (const SceneImage* image : shaded.approximations())
+    if (!image->light.empty())
+      errors[image->name] = json_from_error(picture_error(image->light, shaded.truth));
   return errors;
 }
 
 void draw(const RenderOptions& options, const ShadedScene& scene, const SceneImages& shaded,
           Gallery& gallery) {
-  if (options.wants("light")) add_triptych(scene, shaded, gallery);
+  if (options.wants("light")) add_triptych(shaded, gallery);
   if (options.wants("differences")) add_differences(shaded, gallery);
   if (options.wants("bounces")) add_bounces(scene, options.picture, gallery);
   if (options.wants("saturation")) add_saturation(scene, shaded, gallery);
@@ -83,7 +83,7 @@ std::string describe(const RenderOptions& options, const nlohmann::ordered_json&
       fmt::format("{}: {:.1f} cpu-s\n", options.folder.string(), json["cpu_seconds"].get<double>());
   for (const auto& [name, error] : json["errors"].items())
     text +=
-        fmt::format("{:9} against ground truth: {:+.2f} % in mean luminance, rms {:.2f} %\n", name,
+        fmt::format("{:15} against ground truth: {:+.2f} % in mean luminance, rms {:.2f} %\n", name,
                     100 * error["bias_over_mean"].get<double>(), 100 * error["rms_over_mean"].get<double>());
   return text + gallery.text();
 }

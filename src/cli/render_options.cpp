@@ -8,6 +8,7 @@
 
 #include "core/constants.h"
 #include "core/error.h"
+#include "fitting/fitted_model.h"
 
 namespace hemibake {
 namespace {
@@ -60,22 +61,28 @@ std::vector<Field> render_fields(RenderOptions& options) {
              choices(options.pictures,
                      {"light", "differences", "bounces", "saturation", "planes", "estimators", "views"}),
              "subjects to draw, separated by commas")};
-  append(
-      fields,
-      grouped("Wall",
-              {shown_as(option("albedo", text(options.albedo),
-                               "reflectance 0..1: R,G,B, or one number, or an image of the bake's size, "
-                               "whose bounces are then run again over the links"),
-                        "R,G,B | FILE"),
-               option("albedo-encoding", choice(options.albedo_encoding, {"auto", "linear", "srgb"}),
-                      "of the image: linear, or srgb; auto: srgb where it stores integers"),
-               shown_as(option("links", file(options.links),
-                               "links file of the bake; without it the map is traced again where light has "
-                               "to go round again (albedo map, sun, any sky but uniform)"),
-                        "LINKS.h5"),
-               option("model", choice(options.model, {"bounded", "published"}),
-                      "the model that shades: of the bake's own curves, or of --fit"),
-               shown_as(option("fit", file(options.fit), "constants of the model"), "FIT.json")}));
+  append(fields,
+         grouped(
+             "Wall",
+             {shown_as(option("albedo", text(options.albedo),
+                              "reflectance 0..1: R,G,B, or one number, or an image of the bake's size, "
+                              "whose bounces are then run again over the links"),
+                       "R,G,B | FILE"),
+              option("albedo-encoding", choice(options.albedo_encoding, {"auto", "linear", "srgb"}),
+                     "of the image: linear, or srgb; auto: srgb where it stores integers"),
+              shown_as(option("links", file(options.links),
+                              "links file of the bake; without it the map is traced again where light has "
+                              "to go round again (albedo map, sun, any sky but uniform)"),
+                       "LINKS.h5"),
+              option("model", choice(options.model, model_kind_names()),
+                     "the model that shades. From V, the cosine-weighted AO: visibility, jimenez; from V and "
+                     "the uniform AO: visibility-ao, visibility-ao-mean; from V and the normal: "
+                     "visibility-normal; from the planes visibility and bounce: bounce-map; from "
+                     "the uniform AO: bounded, published"),
+              option("constants", choice(options.constants, {"fit", "none"}),
+                     "of the bake's own curves or of --fit; or those that a model has without fits, as in "
+                     "'hemibake export'"),
+              shown_as(option("fit", file(options.fit), "constants of the model"), "FIT.json")}));
   append(
       fields,
       grouped("Light",

@@ -21,6 +21,7 @@ struct RenderOptions {
   int sky_rays = 256;
   std::string sun;
   std::string model = "bounded";
+  std::string constants = "fit";
   std::vector<std::string> pictures = {"light",  "differences", "bounces", "saturation",
                                        "planes", "estimators",  "views"};
   std::string camera = "150,40";

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "bake/record.h"
 #include "bake/retrace.h"
 #include "core/context.h"
@@ -55,34 +57,64 @@ Sky read_sky(const RenderOptions& options) {
   return sky;
 }
 
-template <class Model>
-ShadingModel shading_model(std::string name, const Model& model) {
-  return {std::move(name), [model](double ao, double albedo) { return model.total(ao, albedo); },
-          [model](double ao) { return model.direct(ao); },
-          [model](double ao) { return model.first_bounce(ao); },
-          [model](double ao) { return model.bounce_ratio(ao); }};
+// Returns m = (⟨V⟩ − ⟨V²⟩)/(1 − ⟨V⟩) over the texels, 1 for flat ground.
+double mean_escape_of(const Bake& bake) {
+  const size_t count = static_cast<size_t>(bake.width) * static_cast<size_t>(bake.height);
+  double blocked = 0, seen_and_blocked = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const double visibility = texel_inputs(bake, i).visibility;
+    blocked += 1 - visibility;
+    seen_and_blocked += visibility * (1 - visibility);
+  }
+  return blocked > 0 ? std::clamp(seen_and_blocked / blocked, 0.0, 1.0) : 1;
 }
 
-// Returns the model of --fit, or of the bake's own curves. Returns none and its `reason` if these do not
-// suffice.
+// Returns the model with the constants that it has without fits: g = α, the bounce map's albedo, the
+// map's mean escape share, those of 2016 and 2018. Throws InputError where it has none, or the bake has no
+// bounce map.
+ShadingModel model_without_constants(const RenderOptions& options, ModelKind kind, const Bake& bake) {
+  std::optional<AnyModel> model = model_without_fits(kind);
+  if (!model)
+    throw InputError(fmt::format(
+        "--constants: the model {} has none without fits, expected fit or another --model", options.model));
+  if (auto* map = std::get_if<BounceMapModel>(&*model)) {
+    if (bake.bounce.empty())
+      throw InputError(options.bake.string() +
+                       ": has no plane bounce, expected the bounce map of a bake with --bounce-albedo");
+    map->bounce_albedo = bake.bounce_albedo;
+  }
+  if (auto* mean = std::get_if<MeanEscapeModel>(&*model))
+    if (missing_plane(*mean, bake).empty()) mean->mean_escape = mean_escape_of(bake);
+  return {has_model({}, kind) ? options.model : options.model + ", no constants fitted", *model};
+}
+
+// Returns the model of --fit, of the bake's own curves, or without fits. Returns none and its `reason` if
+// these do not suffice.
 std::optional<ShadingModel> find_model(const RenderOptions& options, const Bake& bake, std::string& reason) {
+  const ModelKind kind = model_kind_from_string(options.model);
+  const auto without = [&] { return model_without_constants(options, kind, bake); };
+  if (options.constants == "none" || has_model({}, kind)) return without();
+  // The escape α needs no constants: those of a fit, if there is one, are a refinement.
+  const bool optional = kind == ModelKind::kVisibilityAo;
   FitFile fits;
   std::filesystem::path path = options.fit;
   if (!path.empty()) {
     fits = read_fits(path);
+    if (optional && !has_model(fits.fits, kind)) return without();
   } else {
     path = options.bake;
     try {
       fits.fits = fit_model(options.model, make_curves(bake, kBins), Abscissa::kCenter, Weights::kNone);
     } catch (const std::runtime_error& error) {
       throw_if_cancelled();
+      if (optional) return without();
       reason = error.what();
       return std::nullopt;
     }
   }
-  const ShaderModel model = with_file_context(
-      path, [&] { return fitted_model(fits.fits, model_kind_from_string(options.model)); });
-  return std::visit([&](const auto& m) { return shading_model(options.model, m); }, model);
+  return with_file_context(path, [&] {
+    return ShadingModel{options.model, any_fitted_model(fits.fits, kind)};
+  });
 }
 
 // Returns the bake's form factors: of its links file, or traced again.

@@ -35,8 +35,8 @@ int run_report(ReportOptions options, const Invocation& invocation) {
   const Bake bake = folder.bake ? folder.bake->bake : Bake{};
   const PackedPlanes planes =
       with_file_context(options.folder / "bake.exr", [&] { return pack_planes(bake, options.image_size); });
-  const std::vector<ReportModel> models =
-      with_file_context(options.folder / "fit.json", [&] { return report_models(folder.fits); });
+  const std::vector<ReportModel> models = with_file_context(
+      options.folder / "fit.json", [&] { return report_models(folder.fits, folder.bake ? &bake : nullptr); });
   const Rgb albedo = {options.albedo[0], options.albedo[1], options.albedo[2]};
   const ReportData data = gather_report(folder, models, albedo);
   const std::string page =
@@ -50,6 +50,7 @@ int run_report(ReportOptions options, const Invocation& invocation) {
                     {"image", {planes.width, planes.height}},
                     {"stride", planes.stride},
                     {"ao_error", planes.ao_error},
+                    {"bounce_error", planes.bounce_error},
                     {"irradiance_error_over_pi", planes.irradiance_error_over_pi},
                     {"total_error_over_pi", planes.total_error_over_pi},
                     {"albedo", albedo},

@@ -14,6 +14,7 @@
 #include "cli/print/bake.h"
 #include "cli/print/checks.h"
 #include "cli/print/fits.h"
+#include "cli/print/textures.h"
 #include "cli/print/warnings.h"
 #include "cli/result_folder.h"
 #include "core/context.h"
@@ -96,6 +97,8 @@ MapOutcome run_one(RunOptions options, const Invocation& invocation) {
 
   const std::optional<FitFile> fits = write_fits_of(curves, options, provenance);
   nlohmann::ordered_json json = json_from_bake(result, provenance);
+  const std::optional<BounceMapLoss> loss = bounce_map_loss(result.planes);
+  json["bounce_map"] = json_from_bounce_map(loss);
   json["fits"] = nullptr;
   if (fits) {
     json["fits"] = json_from_fits(*fits);
@@ -104,7 +107,8 @@ MapOutcome run_one(RunOptions options, const Invocation& invocation) {
   json["check"] = json_from_checks(checks);
   json["output"] = options.folder.string();
   return {json,
-          describe_bake(options, result) + (fits ? describe_fits(*fits) : "") + table_from_checks(checks),
+          describe_bake(options, result) + describe_bounce_map(loss) + (fits ? describe_fits(*fits) : "") +
+              table_from_checks(checks),
           line_of_bake(options.map, result, options.folder), fits && all_passed(checks) ? 0 : 1};
 }
 

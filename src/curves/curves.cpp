@@ -85,7 +85,7 @@ std::optional<double> mean_escape(const Curves& curves) {
     blocked += bin.count * (1 - v);
     seen_and_blocked += bin.count * (v * (1 - v) - spread * spread);
   }
-  if (blocked <= kFlatGround * count) return std::nullopt;
+  if (blocked <= kFlatGround * count) return 1;
   return std::clamp(seen_and_blocked / blocked, 0.0, 1.0);
 }
 

@@ -48,7 +48,7 @@ double bin_center(const CurveBin& bin);
 double bin_visibility(const CurveBin& bin);
 
 // Returns m = (⟨V⟩ − ⟨V²⟩)/(1 − ⟨V⟩), 0..1: by reciprocity the mean chance, weighted by 1 − V, that light
-// which leaves the surface goes to the sky. None for curves without counts and for flat ground, ⟨V⟩ = 1.
+// which leaves the surface goes to the sky. 1 for flat ground, ⟨V⟩ = 1; none for curves without counts.
 std::optional<double> mean_escape(const Curves& curves);
 
 // Returns E/π of all bounces of one bin at albedo `albedo`, 0..1: Σ ρᵇ E_b/π and the tail after the last

@@ -17,12 +17,9 @@ struct FittedKind {
 
 const std::vector<FittedKind>& fitted_kinds() {  // in the order of ModelKind
   static const std::vector<FittedKind> kinds = {
-      {"visibility", {"visibility"}},
-      {"visibility-ao", {"visibility_ao"}},
-      {"bounce-map", {}},
-      {"bounded", {"bounded_F0", "bounded_tau"}},
-      {"published", {"F0", "F1"}},
-      {"jimenez", {"jimenez"}},
+      {"visibility", {"visibility"}}, {"visibility-normal", {}}, {"visibility-ao", {"visibility_ao"}},
+      {"visibility-ao-mean", {}},     {"bounce-map", {}},        {"bounded", {"bounded_F0", "bounded_tau"}},
+      {"published", {"F0", "F1"}},    {"jimenez", {"jimenez"}},
   };
   return kinds;
 }
@@ -84,6 +81,10 @@ AnyModel any_fitted_model(std::span<const NamedFit> fits, ModelKind kind) {
       return VisibilityModel{constant(*found[0], "dark", 0, 1), constant(*found[0], "open", 0, 1)};
     case ModelKind::kVisibilityAo:
       return VisibilityAoModel{constant(*found[0], "dark", 0, 1), constant(*found[0], "open", 0, 1)};
+    case ModelKind::kVisibilityNormal:
+      return VisibilityNormalModel{};
+    case ModelKind::kMeanEscape:
+      return MeanEscapeModel{};
     case ModelKind::kBounceMap:
       return BounceMapModel{};
     case ModelKind::kBounded:
@@ -116,6 +117,10 @@ std::optional<AnyModel> model_without_fits(ModelKind kind) {
       return VisibilityModel{0, 1};
     case ModelKind::kVisibilityAo:
       return VisibilityAoModel{0, 1};
+    case ModelKind::kVisibilityNormal:
+      return VisibilityNormalModel{};
+    case ModelKind::kMeanEscape:
+      return MeanEscapeModel{};
     case ModelKind::kBounceMap:
       return BounceMapModel{};
     case ModelKind::kBounded:

@@ -14,12 +14,14 @@ namespace hemibake {
 
 // Names a model by the fits that it takes.
 enum class ModelKind {
-  kVisibility,    // visibility
-  kVisibilityAo,  // visibility_ao
-  kBounceMap,     // none: its constant is the albedo of the bounce map
-  kBounded,       // bounded_F0 and bounded_tau
-  kMayaux2018,    // F0 and F1; guarded
-  kJimenez,       // jimenez
+  kVisibility,        // visibility
+  kVisibilityNormal,  // none: it has no constants
+  kVisibilityAo,      // visibility_ao
+  kMeanEscape,        // none: its constant is the mean escape share of a map
+  kBounceMap,         // none: its constant is the albedo of the bounce map
+  kBounded,           // bounded_F0 and bounded_tau
+  kMayaux2018,        // F0 and F1; guarded
+  kJimenez,           // jimenez
 };
 
 // Returns the names of all kinds, in the order of the enumerators.

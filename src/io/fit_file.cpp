@@ -99,6 +99,19 @@ Fit fit_from_json(const Json& json) {
   return fit;
 }
 
+// Throws Json::exception for what is missing or of another type, InputError for shares outside 0..1.
+std::vector<MapEscape> escapes_from_json(const Json& maps) {
+  std::vector<MapEscape> escapes;
+  for (const Json& map : maps) {
+    const MapEscape escape{map.at("map").get<std::string>(), number_or_null(map.at("mean_escape"))};
+    if (escape.mean_escape && !(*escape.mean_escape >= 0 && *escape.mean_escape <= 1))
+      throw InputError(
+          fmt::format("mean_escape of {} is {}, expected 0 to 1", escape.map, *escape.mean_escape));
+    escapes.push_back(escape);
+  }
+  return escapes;
+}
+
 }  // namespace
 
 Json json_from_fits(const FitFile& file) {
@@ -114,9 +127,12 @@ FitFile fits_from_json(const Json& json, const std::filesystem::path& path) {
   FitFile file;
   for (const auto& [name, value] : json.items()) {
     if (name == "provenance") file.provenance = value;
-    if (name == "provenance" || name == "maps" || name == "held_out") continue;
+    if (name == "provenance" || name == "held_out") continue;
     try {
-      file.fits.push_back({name, fit_from_json(value)});
+      if (name == "maps")
+        file.escapes = escapes_from_json(value);
+      else
+        file.fits.push_back({name, fit_from_json(value)});
     } catch (const Json::exception& error) {
       const std::string_view what = error.what();  // "[json.exception.…] reason"
       throw InputError(fmt::format("{}: {}: {}, expected a fit as 'hemibake fit' writes it", path.string(),

@@ -11,15 +11,22 @@
 
 namespace hemibake {
 
+// The mean escape share m of one of the maps that were fitted; none where its curves did not tell.
+struct MapEscape {
+  std::string map;
+  std::optional<double> mean_escape;  // 0..1
+};
+
 struct FitFile {
   std::vector<NamedFit> fits;
   Provenance provenance;
-  MapComparison comparison;  // without maps where it is unknown; written, but not read back
+  MapComparison comparison;             // without maps where it is unknown; written, but not read back
+  std::vector<MapEscape> escapes = {};  // read from the maps of the file, not written
 };
 
 nlohmann::ordered_json json_from_fits(const FitFile& file);
 
-// Throws InputError "FILE: NAME: …, expected …". path: for errors only.
+// Throws InputError "FILE: NAME: …, expected …"; NAME is a fit or maps. path: for errors only.
 FitFile fits_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
 // Returns lines for the head of a model's shader text: version, formulas with their constants, name of the

@@ -57,14 +57,27 @@ Table table_of(const VisibilityModel& model) {
   return table;
 }
 
-Table table_of(const VisibilityAoModel& model) {
-  Table table = head({"visibility", "ao"}, true);
-  add_square([&](double v, double ao) {
-    const double escape = model.escape(ao);
-    add_row(table, {v, ao, v, (1 - v) * escape, 1 - escape},
-            [&](double albedo) { return model.total(v, ao, albedo); });
+// Makes the table of a model of V and a second input, `second`. escape(visibility, second): g.
+template <class Model, class Escape>
+Table table_of_pairs(const char* second, const Model& model, Escape escape) {
+  Table table = head({"visibility", second}, true);
+  add_square([&](double v, double x) {
+    const double g = escape(v, x);
+    add_row(table, {v, x, v, (1 - v) * g, 1 - g}, [&](double albedo) { return model.total(v, x, albedo); });
   });
   return table;
+}
+
+Table table_of(const VisibilityAoModel& model) {
+  return table_of_pairs("ao", model, [&](double, double ao) { return model.escape(ao); });
+}
+
+Table table_of(const MeanEscapeModel& model) {
+  return table_of_pairs("ao", model, [&](double, double ao) { return model.escape(ao); });
+}
+
+Table table_of(const VisibilityNormalModel& model) {
+  return table_of_pairs("normal_z", model, [&](double v, double z) { return model.escape(v, z); });
 }
 
 Table table_of(const BounceMapModel& model) {

@@ -25,20 +25,27 @@ Grid<glm::vec3> shade(const ShadedScene& scene, const Irradiance& irradiance) {
 }  // namespace
 
 Grid<glm::vec3> shade_with(const ShadedScene& scene,
-                           const std::function<double(double ao, double albedo)>& factor) {
+                           const std::function<double(const TexelInputs& inputs, double albedo)>& factor) {
   return shade(scene, [&](size_t i, int c) {
-    const double of_sky = factor(static_cast<double>(scene.bake.visible_fraction[i]),
-                                 static_cast<double>(scene.albedo.at(i)[c]));
+    const double of_sky = factor(texel_inputs(scene.bake, i), static_cast<double>(scene.albedo.at(i)[c]));
     const double sun = scene.sun.empty() ? 0.0 : static_cast<double>(scene.sun[i][c]);
     return of_sky * static_cast<double>(scene.sky[i][c]) + sun;
   });
 }
 
 Grid<glm::vec3> shade_ao_only(const ShadedScene& scene) {
-  return shade_with(scene, [](double ao, double) { return ao; });
+  return shade_with(scene, [](const TexelInputs& inputs, double) { return inputs.ao; });
 }
 
-Grid<glm::vec3> shade_model(const ShadedScene& scene) { return shade_with(scene, scene.model->total); }
+Grid<glm::vec3> shade_visibility_only(const ShadedScene& scene) {
+  return shade_with(scene, [](const TexelInputs& inputs, double) { return inputs.visibility; });
+}
+
+Grid<glm::vec3> shade_model(const ShadedScene& scene, const AnyModel& model) {
+  return shade_with(scene, [&](const TexelInputs& inputs, double albedo) {
+    return model_irradiance(model, inputs, albedo);
+  });
+}
 
 Grid<glm::vec3> shade_truth(const ShadedScene& scene) {
   return shade(scene, [&](size_t i, int c) { return static_cast<double>(scene.truth->total[i][c]); });

@@ -9,16 +9,15 @@
 #include "core/grid.h"
 #include "lighting/albedo.h"
 #include "lighting/relight.h"
+#include "lighting/texel_model.h"
 #include "surface/surface.h"
 #include "transport/baked_planes.h"
 
 namespace hemibake {
 
-// E/π over all bounces, F₀, F₁ and τ of a fitted model (model/model.h), for α and ρ in 0..1.
 struct ShadingModel {
   std::string name;
-  std::function<double(double ao, double albedo)> total;
-  std::function<double(double ao)> direct, first_bounce, bounce_ratio;
+  AnyModel model;
 };
 
 struct ShadedScene {
@@ -32,19 +31,22 @@ struct ShadedScene {
 };
 
 // Shading returns the light that leaves each texel, ρE/π, RGB: 1 for a white scene in the open under a sky of
-// radiance 1. AO and the model scale the light of the sky only: the sun is darkened by its own shadow alone.
+// radiance 1. α, V and the model scale the light of the sky only: the sun is darkened by its own shadow
+// alone.
 
 // Shades the sky by α.
 Grid<glm::vec3> shade_ao_only(const ShadedScene& scene);
-// Shades the sky by the model, which must be there.
-Grid<glm::vec3> shade_model(const ShadedScene& scene);
+// Shades the sky by V, which the bake must give.
+Grid<glm::vec3> shade_visibility_only(const ShadedScene& scene);
+// Shades the sky by a model whose planes the bake holds. Each texel counts with its own albedo.
+Grid<glm::vec3> shade_model(const ShadedScene& scene, const AnyModel& model);
 // Shades by the truth, which must be there.
 Grid<glm::vec3> shade_truth(const ShadedScene& scene);
 // Shades by the part of the truth that was reflected `bounce` times before its last reflection.
 Grid<glm::vec3> shade_bounce(const ShadedScene& scene, size_t bounce);
-// Shades the sky by a factor of α and ρ: irradiance relative to that of the open sky.
+// Shades the sky by a factor of what a texel holds and of ρ: irradiance relative to that of the open sky.
 Grid<glm::vec3> shade_with(const ShadedScene& scene,
-                           const std::function<double(double ao, double albedo)>& factor);
+                           const std::function<double(const TexelInputs& inputs, double albedo)>& factor);
 
 // Differences in luminance over the mean luminance of the truth.
 struct PictureError {

@@ -89,6 +89,29 @@ T escape_irradiance(X visibility, const T& escape, X albedo) {
   return T(1) - (X(1) - visibility) * (kept / (kept + albedo * escape));
 }
 
+// Returns g = α(1 + m)/(1 + α). It is α where α = m, more below and less above: shares lie nearer to their
+// map's mean than α does. Rises with α and m, in 0..1: at α = 1 it is (1 + m)/2.
+// ao: α, 0..1. mean_escape: m = (⟨V⟩ − ⟨V²⟩)/(1 − ⟨V⟩) of the map, 0..1; 1 of flat ground. Form factors times
+// areas are symmetric, so the first bounce brings ⟨V(1−V)⟩ on average: m is the mean of its true g, weighted
+// by 1 − V. Chosen on the maps of fits/README.md, "Tiers".
+template <class X>
+X mean_escape_share(X ao, X mean_escape) {
+  return ao * (X(1) + mean_escape) / (X(1) + ao);
+}
+
+// Constants of normal_escape_share: its factor where n.z = 0, and how much that falls to n.z = 1. Rounded
+// from a fit to the maps of fits/README.md, "Tiers".
+inline constexpr double kSteepEscape = 1.3;
+inline constexpr double kEscapeFall = 0.6;
+
+// Returns g = V(1.3 − .6 n.z), at most 1. Rises with V for every n.z; at the same V, light leaves a wall more
+// easily than a floor.
+// visibility: V, 0..1. normal_z: n.z of the shading normal in the frame of the large surface, 0..1.
+template <class X>
+X normal_escape_share(X visibility, X normal_z) {
+  return std::min(visibility * (static_cast<X>(kSteepEscape) - static_cast<X>(kEscapeFall) * normal_z), X(1));
+}
+
 // Returns E/π over all bounces from the light at two albedos: the curve through (0, V), (r, E_r) and (1, 1)
 // that escape_irradiance draws with the g of the texel. In [V, 1], rises with ρ and E_r; with V up to ρ = r,
 // and beyond r it falls with V, since the same E_r then needs a smaller g.

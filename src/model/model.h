@@ -135,6 +135,32 @@ struct VisibilityAoModel {
   }
 };
 
+// Gives all bounces from V, α and the map's mean escape share m, with g = α(1 + m)/(1 + α).
+struct MeanEscapeModel {
+  double mean_escape = 1;  // m, 0..1 (mean_escape_share): from AO alone, known before any bounce
+
+  template <class T>
+  T escape(T ao) const {
+    return mean_escape_share(ao, static_cast<T>(mean_escape));
+  }
+  template <class T>
+  T total(T visibility, T ao, T albedo) const {
+    return escape_irradiance(visibility, escape(ao), albedo);
+  }
+};
+
+// Gives all bounces from V and n.z, with g = V(1.3 − .6 n.z). Rises with V and ρ.
+struct VisibilityNormalModel {
+  template <class T>
+  T escape(T visibility, T normal_z) const {
+    return normal_escape_share(visibility, normal_z);
+  }
+  template <class T>
+  T total(T visibility, T normal_z, T albedo) const {
+    return escape_irradiance(visibility, escape(visibility, normal_z), albedo);
+  }
+};
+
 // Gives all bounces from two textures, V and E/π at one albedo: the planes `visibility` and `bounce` of a
 // bake.
 struct BounceMapModel {
@@ -164,8 +190,8 @@ struct JimenezModel {
 };
 
 // Holds any model that text and tables can be made of.
-using AnyModel = std::variant<VisibilityModel, VisibilityAoModel, BounceMapModel, BoundedModel, GuardedModel,
-                              JimenezModel>;
+using AnyModel = std::variant<VisibilityModel, VisibilityNormalModel, VisibilityAoModel, MeanEscapeModel,
+                              BounceMapModel, BoundedModel, GuardedModel, JimenezModel>;
 
 // Returns a model of α as any model.
 inline AnyModel any_model(const ShaderModel& model) {

@@ -33,13 +33,21 @@ constexpr std::string_view kAoUniformUsage =
 // (2 - ao_uniform); swapped, the result is wrong by up to .25, mostly too dark.
 )";
 
+constexpr std::string_view kNormalUsage =
+    R"(// normal_z: z of the shading normal in the frame of the large surface, 0..1: 2 * blue - 1 of a tangent-space normal map.
+// At the same visibility light leaves walls more easily than floors.
+)";
+
+constexpr std::string_view kMeanEscapeUsage =
+    R"(// The constant mean_escape is one number of a map, from its visibility alone: (mean(v) - mean(v * v)) / (1 - mean(v)).
+)";
+
 constexpr std::string_view kMapUsage =
     R"(// map: two ordinary ambient occlusion textures in two channels, linear, filtered as usual. x: visibility, the
 // cosine-weighted AO: all light at albedo 0. y: all light at the albedo that is named below as bounce_albedo; it must be
 // the one that the map was baked with. y is never below x. Swapped, every albedo below 1 gets the light of that one.
 )";
 
-// $tiny: below every 1 - albedo that is not 0.
 constexpr std::string_view kUnitRange = R"(
 fn $unit_range(x: float) -> float {
   return min(max(x, 0.0), 1.0);
@@ -79,14 +87,14 @@ fn $blocked_irradiance(ao: float) -> float {
   return 1.0 - @direct_irradiance(ao);
 }
 
-// 1 - tau = F1 / (1 - F0), cut at 1 where the formulas' F1 exceeds 1 - F0 (from about ao = 0.76 on), and just above 0.
+// 1 - tau = F1 / (1 - F0), cut at 1 where the formulas' F1 exceeds 1 - F0 (from about ao = 0.76 on).
 fn $escape_share(ao: float) -> float {
   let a = $unit_range(ao);
   let b = 1.0 - a;
   let first = $a * a * b * sqrt(b) * exp($minus_b * sqrt(sqrt(a)));
   let blocked = $blocked_irradiance(ao);
   if (first < blocked) {
-    return max(first / blocked, $tiny);
+    return first / blocked;
   }
   return 1.0;
 }
@@ -106,6 +114,9 @@ fn @bounce_ratio(ao: float) -> float {
 // F0 + albedo * F1 / (1 - albedo * tau), written so that no difference of near equals is divided by.
 fn $all_bounces(direct: float, blocked: float, escape: float, albedo: float) -> float {
   let r = $unit_range(albedo);
+  if (r >= 1.0) {
+    return 1.0;
+  }
   let sent_out = r * escape;
   return min(direct + blocked * (sent_out / (1.0 - r + sent_out)), 1.0);
 }
@@ -128,7 +139,10 @@ constexpr std::string_view kAllBounces = R"(
 fn $all_bounces(blocked: float, escape: float, albedo: float) -> float {
   let r = $unit_range(albedo);
   let kept = 1.0 - r;
-  return 1.0 - blocked * (kept / max(kept + r * escape, $tiny));
+  if (kept <= 0.0) {
+    return 1.0;
+  }
+  return 1.0 - blocked * (kept / (kept + r * escape));
 }
 )";
 
@@ -148,7 +162,15 @@ fn @multi_bounce_irradiance(visibility: float, ao_uniform: float, albedo: vec3) 
   let escape = #escape;
 )";
 
-// Ends either of the two functions above.
+constexpr std::string_view kOfVisibilityAndNormal = R"(
+// All bounces of light, for each channel of the albedo. The order is visibility, then normal_z.
+fn @multi_bounce_irradiance(visibility: float, normal_z: float, albedo: vec3) -> vec3 {
+  let v = $unit_range(visibility);
+  let blocked = 1.0 - v;
+  let escape = min(v * ($steep_escape - $escape_fall * $unit_range(normal_z)), 1.0);
+)";
+
+// Ends each of the three functions above.
 constexpr std::string_view kEachChannel = R"(  return rgb(
       $all_bounces(blocked, escape, albedo.x),
       $all_bounces(blocked, escape, albedo.y),
@@ -161,14 +183,21 @@ constexpr std::string_view kOfBounceMap = R"(
 // blocked: 1 - visibility. missing: what is missing of 1 at the map's albedo. gained: how much bounces filled in.
 fn $all_bounces(blocked: float, missing: float, gained: float, albedo: float) -> float {
   let r = $unit_range(albedo);
+  if (r >= 1.0) {
+    return 1.0;
+  }
   let kept = (1.0 - r) * missing;
-  return 1.0 - blocked * (kept / max(kept + r * gained, $tiny));
+  let sum = kept + r * gained;
+  if (sum <= 0.0) {
+    return 1.0 - blocked;
+  }
+  return 1.0 - blocked * (kept / sum);
 }
 
 // All bounces of light, for each channel of the albedo.
 fn @multi_bounce(map: vec2, albedo: vec3) -> vec3 {
   let blocked = 1.0 - $unit_range(map.x);
-  let missing = min(max(1.0 - map.y, $small), blocked);
+  let missing = min($unit_range(1.0 - map.y), blocked);
   let gained = $bounce_odds * (blocked - missing);
   return rgb(
       $all_bounces(blocked, missing, gained, albedo.x),
@@ -209,27 +238,25 @@ fn @multi_bounce_irradiance(visibility: float, albedo: vec3) -> vec3 {
 }
 )";
 
-// Below every 1 − albedo but 0, also times the light below. In half precision no number is that small: the
-// smallest normal one takes its place.
-const ShaderConstant kTiny{"$tiny", "1e-30"};
-// Stands for no missing light; its product with 1 − albedo stays above $tiny.
-const ShaderConstant kSmall{"$small", "1e-20"};
 // Share of a texel's own albedo in what its bounces meet (fits/README.md).
 const ShaderConstant kOwnShare{"$own_share", "0.25"};
 
 ShaderConstant number(const char* name, double value) { return {name, shader_number(value)}; }
 
-std::string with_escape(std::string_view functions, std::string_view variable, double dark, double open) {
-  const bool plain = dark == 0 && open == 1;
-  const std::string escape =
-      plain ? std::string(variable) : fmt::format("$dark + ($open - $dark) * {}", variable);
+// Returns dark + (open − dark)·variable; the variable alone where that is all.
+std::string linear_escape(std::string_view variable, double dark, double open) {
+  if (dark == 0 && open == 1) return std::string(variable);
+  return fmt::format("$dark + ($open - $dark) * {}", variable);
+}
+
+std::string with_escape(std::string_view functions, std::string_view escape) {
   std::string text(functions);
   return text.replace(text.find("#escape"), 7, escape);
 }
 
 std::vector<ShaderConstant> escape_constants(double dark, double open) {
-  if (dark == 0 && open == 1) return {kOwnShare, kTiny};
-  return {number("$dark", dark), number("$open", open), kOwnShare, kTiny};
+  if (dark == 0 && open == 1) return {kOwnShare};
+  return {number("$dark", dark), number("$open", open), kOwnShare};
 }
 
 std::string join(std::initializer_list<std::string_view> parts) {
@@ -251,22 +278,40 @@ ShaderSource source_of(const GuardedModel& model) {
   return {
       join({kAoUsage, kResults}),
       "published",
-      {number("$k", m.k), number("$e", m.e), number("$a", m.a), number("$minus_b", -m.b), kTiny},
+      {number("$k", m.k), number("$e", m.e), number("$a", m.a), number("$minus_b", -m.b)},
       join({kUnitRange, kGuarded, kOfAo}),
   };
 }
 
+// Returns the parts that the models with an escape share have in common. function: begins the one of all
+// bounces.
+std::string escape_functions(std::string_view function) {
+  return join({kUnitRange, kAllBounces, function, kEachChannel, kBounceAlbedo});
+}
+
 ShaderSource source_of(const VisibilityModel& m) {
   return {join({kVisibilityUsage, kResults}), "visibility", escape_constants(m.dark, m.open),
-          join({kUnitRange, kAllBounces, with_escape(kOfVisibility, "v", m.dark, m.open), kEachChannel,
-                kBounceAlbedo})};
+          escape_functions(with_escape(kOfVisibility, linear_escape("v", m.dark, m.open)))};
+}
+
+ShaderSource source_of(const VisibilityNormalModel&) {
+  return {join({kVisibilityUsage, kNormalUsage, kResults}),
+          "visibility-normal",
+          {number("$steep_escape", kSteepEscape), number("$escape_fall", kEscapeFall), kOwnShare},
+          escape_functions(kOfVisibilityAndNormal)};
 }
 
 ShaderSource source_of(const VisibilityAoModel& m) {
   return {join({kVisibilityUsage, kAoUniformUsage, kResults}), "visibility-ao",
           escape_constants(m.dark, m.open),
-          join({kUnitRange, kAllBounces, with_escape(kOfVisibilityAndAo, "a", m.dark, m.open), kEachChannel,
-                kBounceAlbedo})};
+          escape_functions(with_escape(kOfVisibilityAndAo, linear_escape("a", m.dark, m.open)))};
+}
+
+ShaderSource source_of(const MeanEscapeModel& m) {
+  return {join({kVisibilityUsage, kAoUniformUsage, kMeanEscapeUsage, kResults}),
+          "visibility-ao-mean",
+          {number("$mean_escape", m.mean_escape), kOwnShare},
+          escape_functions(with_escape(kOfVisibilityAndAo, "a * (1.0 + $mean_escape) / (1.0 + a)"))};
 }
 
 ShaderSource source_of(const BounceMapModel& m) {
@@ -274,9 +319,7 @@ ShaderSource source_of(const BounceMapModel& m) {
           "bounce-map",
           {number("$bounce_albedo", m.bounce_albedo),
            {"$bounce_odds", "(1.0 - $bounce_albedo) / $bounce_albedo"},
-           kOwnShare,
-           kSmall,
-           kTiny},
+           kOwnShare},
           join({kUnitRange, kOfBounceMap, kBounceAlbedo})};
 }
 

@@ -16,7 +16,8 @@ namespace hemibake {
 //
 // BoundedModel, GuardedModel: direct_irradiance(ao), first_bounce_irradiance(ao), bounce_ratio(ao),
 // multi_bounce_irradiance(ao, albedo). VisibilityModel, JimenezModel: multi_bounce_irradiance(visibility,
-// albedo). VisibilityAoModel: multi_bounce_irradiance(visibility, ao_uniform, albedo). BounceMapModel:
+// albedo). VisibilityAoModel, MeanEscapeModel: multi_bounce_irradiance(visibility, ao_uniform, albedo).
+// VisibilityNormalModel: multi_bounce_irradiance(visibility, normal_z, albedo). BounceMapModel:
 // multi_bounce(map, albedo). Those of V or a map, but not the cubic: albedo_of_bounces(blurred, own).
 // origin: comment lines for the head, without "// ", that say where the constants come from.
 // prefix: begins every name; empty: constants and helpers begin with hemibake_, the functions above with

@@ -131,7 +131,7 @@ nlohmann::ordered_json Gallery::json() const {
 std::string Gallery::text() const {
   std::string text;
   for (const PictureRecord& picture : pictures_) {
-    text += fmt::format("  {:18}", picture.name);
+    text += fmt::format("  {:26} ", picture.name);
     if (picture.exposure_ev)
       text += fmt::format("exposure {:+.2f} EV, {} pixels above white, {} below black", *picture.exposure_ev,
                           picture.clipping.above_white, picture.clipping.below_black);
@@ -140,7 +140,7 @@ std::string Gallery::text() const {
                           scale->label);
     text += '\n';
   }
-  for (const auto& [name, reason] : missing_) text += fmt::format("  {:18}missing: {}\n", name, reason);
+  for (const auto& [name, reason] : missing_) text += fmt::format("  {:26} missing: {}\n", name, reason);
   return text;
 }
 

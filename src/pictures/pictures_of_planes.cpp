@@ -9,6 +9,7 @@
 #include "estimators/estimator.h"
 #include "pictures/color_map.h"
 #include "pictures/pictures.h"
+#include "textures/light.h"
 
 namespace hemibake {
 namespace {
@@ -34,23 +35,33 @@ Grid<float> over_pi(const Grid<float>& values) {
   return result;
 }
 
-// "disk: rms 0.021 to AO"
+// Returns V of every texel; empty where the bake does not give it.
+Grid<float> visibility_of(const Bake& bake) {
+  if (!has_visibility(bake)) return {};
+  Grid<float> visibility(bake.width, bake.height);
+  for (size_t i = 0; i < visibility.size(); ++i) visibility[i] = static_cast<float>(visibility_at(bake, i));
+  return visibility;
+}
+
+// "disk: rms 0.021 to V"
 std::string estimate_caption(const std::string& name, const Grid<float>& ao, AoKind kind, const Bake& bake) {
-  if (kind == AoKind::kUniform)
-    return fmt::format("{}: rms {:.3f} to AO", name, rms_difference(ao.values, bake.visible_fraction.values));
-  if (bake.irradiance.empty()) return name;
-  return fmt::format("{}: rms {:.3f} to E0/pi", name,
-                     rms_difference(ao.values, over_pi(bake.irradiance[0]).values));
+  const Grid<float> truth = kind == AoKind::kUniform ? bake.visible_fraction : visibility_of(bake);
+  if (truth.empty()) return name;
+  return fmt::format("{}: rms {:.3f} to {}", name, rms_difference(ao.values, truth.values),
+                     kind == AoKind::kUniform ? "alpha" : "V");
 }
 
 }  // namespace
 
 void add_planes(const ShadedScene& scene, Gallery& gallery) {
   const Bake& bake = scene.bake;
-  if (bake.visible_fraction.empty())
-    gallery.report_missing("ao", "the bake holds no ao");
-  else
-    gallery.add_values("ao", bake.visible_fraction);
+  const auto add_values = [&](const char* name, const char* what, const Grid<float>& values) {
+    if (values.empty()) return gallery.report_missing(name, std::string("the bake holds no ") + what);
+    gallery.add_values(name, values);
+  };
+  add_values("ao", "ao", bake.visible_fraction);
+  add_values("visibility", "visibility", visibility_of(bake));
+  add_values("bounce", "bounce map", bake.bounce);
   if (bake.bent_normals.empty())
     gallery.report_missing("bent_normals", "the bake holds no bent normals");
   else
@@ -70,7 +81,7 @@ void add_estimators(const ShadedScene& scene, Gallery& gallery) {
     return gallery.report_missing("estimators", "the bake holds no ao to compare with");
   if (!scene.surface) return gallery.report_missing("estimators", "the map of the bake was not found");
   std::array<std::vector<Panel>, 2> rows;
-  rows[0].push_back(grey_panel(scene.bake.visible_fraction, "the bake, AO"));
+  rows[0].push_back(grey_panel(scene.bake.visible_fraction, "the bake, alpha"));
   const EstimatorOptions options;
   for (const Estimator& estimator : estimators()) {
     if (estimator.name == std::string_view("alchemy")) continue;
@@ -87,8 +98,7 @@ void add_estimators(const ShadedScene& scene, Gallery& gallery) {
     gallery.add_values(name, ao);
     rows[1].push_back(grey_panel(ao, estimate_caption(caption, ao, AoKind::kCosine, scene.bake)));
   };
-  if (!scene.bake.irradiance.empty())
-    rows[1].push_back(grey_panel(over_pi(scene.bake.irradiance[0]), "the bake, E0/pi"));
+  if (has_visibility(scene.bake)) rows[1].push_back(grey_panel(visibility_of(scene.bake), "the bake, V"));
   add_pass("estimator_alchemy_0", "alchemy, raw", passes.raw);
   add_pass("estimator_alchemy_1", "along rows", passes.blurred_rows);
   add_pass("estimator_alchemy_2", "and columns", passes.blurred);

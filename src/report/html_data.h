@@ -10,6 +10,7 @@
 #include "fitting/candidates.h"
 #include "model/model.h"
 #include "report/html_folder.h"
+#include "textures/bounce_map_loss.h"
 
 namespace hemibake {
 
@@ -20,29 +21,28 @@ inline constexpr std::array<double, 11> kPlotAlbedos = {0, 0.1, 0.2, 0.3, 0.4, 0
 
 // Offers a model on the page.
 struct ReportModel {
-  std::string id;  // bounded, published or notes
-  std::string title;
-  ShaderModel model;
+  std::string id;     // bounce-map, visibility-ao, visibility, bounded, published or notes
+  std::string title;  // begins with what the model takes: α, V or the bounce map
+  AnyModel model;
   std::vector<std::string> origin;  // head of its shader texts
-
-  double total(double ao, double albedo) const {
-    return std::visit([&](const auto& m) { return m.total(ao, albedo); }, model);
-  }
 };
 
-// Returns the models fitted to the folder's curves, best first, then that of 2018 with its published
-// constants. Throws InputError where constants of `fits` cannot be used, without the file's name.
-std::vector<ReportModel> report_models(const std::optional<FitFile>& fits);
+// Returns the models of V without constants and the bounce map, as far as the bake holds what they take,
+// those of α that were fitted to the folder's curves, and that of 2018 with its published constants. Throws
+// InputError where constants of `fits` cannot be used, without the file's name.
+// bake: null where the folder has none; the bounce map is then left out.
+std::vector<ReportModel> report_models(const std::optional<FitFile>& fits, const Bake* bake);
 
-// Holds the rms over all texels of E/π of each model, and of plain AO last, at one albedo.
+// Holds the light at one albedo against every model, and then every other way of shading: rms over all texels
+// of E/π.
 struct TexelErrors {
   double albedo = 0;
-  std::vector<double> rms;
+  std::vector<double> models, others;
 };
 
 // Holds means over the texels of a bake; irradiance over π.
 struct BakeMeans {
-  std::optional<double> ao, total, residual, worst_residual;
+  std::optional<double> ao, visibility, total, residual, worst_residual;
   std::vector<double> irradiance;
 };
 
@@ -53,10 +53,11 @@ struct BinTotals {
   double stored_bounces = 0;
 };
 
-// Holds the errors of a model that has no constants of this map.
+// Holds the errors that a way of shading has over the bins of the curves.
 struct OtherModel {
+  std::string id;  // off (α alone), off-visibility (V alone) or jimenez
   std::string title;
-  Score score;
+  std::optional<Score> score;  // none without curves
 };
 
 // Holds what a report computes from a folder; empty where the folder lacks the data.
@@ -65,8 +66,9 @@ struct ReportData {
   Rgb albedo{};  // the page opens with
   BakeMeans means;
   std::vector<TexelErrors> texel_errors;
-  std::vector<BinTotals> totals;  // of each bin of the curves; 0 for an empty bin
-  std::vector<Score> scores;      // of each model
+  std::optional<BounceMapLoss> bounce_map;   // none where the bake lacks what it takes
+  std::vector<BinTotals> totals;             // of each bin of the curves; 0 for an empty bin
+  std::vector<std::optional<Score>> scores;  // of each model; none without curves, and of the bounce map
   std::vector<OtherModel> other_models;
 };
 
@@ -75,7 +77,8 @@ ReportData gather_report(const ReportFolder& folder, std::span<const ReportModel
 // Holds the light of one texel of the bake (not of the page's codes), irradiance over π.
 struct ReportProbe {
   int x = 0, y = 0;
-  double ao = 0;
+  double ao = 0, visibility = 0;
+  std::optional<double> bounce;    // E at the albedo of the bounce map
   std::vector<double> irradiance;  // E_b at albedo 1
   std::vector<Rgb> models;         // E of each model
   Rgb truth{};                     // Σ ρᵇ E_b

@@ -50,24 +50,45 @@ Json json_from_curves(const Curves& curves, int bounces, std::span<const BinTota
   return {{"bounces", bounces}, {"has_counts", curves.has_counts}, {"bins", bins}};
 }
 
-Json json_from_texel_errors(const TexelErrors& errors, std::span<const ReportModel> models) {
+Json json_from_texel_errors(const TexelErrors& errors, std::span<const ReportModel> models,
+                            std::span<const OtherModel> others) {
   Json json = {{"albedo", errors.albedo}};
-  for (size_t m = 0; m <= models.size(); ++m)
-    json[m < models.size() ? models[m].id : "off"] = rounded(errors.rms[m]);
+  for (size_t m = 0; m < models.size(); ++m) json[models[m].id] = rounded(errors.models[m]);
+  for (size_t k = 0; k < others.size(); ++k) json[others[k].id] = rounded(errors.others[k]);
   return json;
+}
+
+// rms, percentile, largest: one for each albedo.
+Json json_from_bounce_map(const std::optional<BounceMapLoss>& loss) {
+  if (!loss) return nullptr;
+  Json list = Json::array();
+  for (const StoredLoss& stored : loss->stored) {
+    Json& json = list.emplace_back(Json{{"bits", stored.bits}, {"box", stored.box}});
+    for (const MapError& error : stored.by_albedo) {
+      json["rms"].push_back(rounded(error.rms));
+      json["percentile"].push_back(rounded(error.percentile));
+      json["largest"].push_back(rounded(error.largest));
+    }
+  }
+  return {{"bounce_albedo", loss->bounce_albedo},
+          {"truth_rms", rounded(loss->truth_rms)},
+          {"albedos", kBounceMapAlbedos},
+          {"stored", list}};
 }
 
 Json json_from_bake(const BakeFile& file, std::span<const ReportModel> models, const PackedPlanes& planes,
                     const ReportData& data) {
   Json json = {{"width", file.bake.width}, {"height", file.bake.height}};
   json["mean_ao"] = rounded(data.means.ao);
+  json["mean_visibility"] = rounded(data.means.visibility);
   json["mean_irradiance"] = rounded_list(data.means.irradiance);
   json["mean_total"] = rounded(data.means.total);
   json["mean_residual"] = rounded(data.means.residual);
   json["worst_residual"] = rounded(data.means.worst_residual);
   json["texel_errors"] = Json::array();
   for (const TexelErrors& errors : data.texel_errors)
-    json["texel_errors"].push_back(json_from_texel_errors(errors, models));
+    json["texel_errors"].push_back(json_from_texel_errors(errors, models, data.other_models));
+  json["bounce_map"] = json_from_bounce_map(data.bounce_map);
   Json list = Json::array();
   for (const PackedPlane& plane : planes.planes) list.push_back({{"name", plane.name}, {"step", plane.step}});
   json["planes"] = {{"width", planes.width},
@@ -75,31 +96,37 @@ Json json_from_bake(const BakeFile& file, std::span<const ReportModel> models, c
                     {"stride", planes.stride},
                     {"list", list},
                     {"ao_error", planes.ao_error},
+                    {"bounce_error", planes.bounce_error},
                     {"irradiance_error_over_pi", planes.irradiance_error_over_pi},
                     {"total_error_over_pi", planes.total_error_over_pi}};
   json["settings"] = file.provenance;
   return json;
 }
 
-Json json_from_score(const Score& score) {
-  return {{"rms", rounded(score.rms)}, {"max", rounded(score.max_error)}};
+Json json_from_score(const std::optional<Score>& score) {
+  if (!score) return nullptr;
+  return {{"rms", rounded(score->rms)}, {"max", rounded(score->max_error)}};
 }
 
-Json constants_of(const ShaderModel& model) {
-  if (const auto* m = std::get_if<BoundedModel>(&model))
-    return {{"k0", m->k0}, {"k1", m->k1}, {"q", m->q}, {"d", m->d}};
-  const Mayaux2018Model& m = std::get<GuardedModel>(model).formulas;
-  return {{"k", m.k}, {"e", m.e}, {"A", m.a}, {"B", m.b}};
+Json constants_of(const BoundedModel& m) { return {{"k0", m.k0}, {"k1", m.k1}, {"q", m.q}, {"d", m.d}}; }
+Json constants_of(const GuardedModel& m) {
+  return {{"k", m.formulas.k}, {"e", m.formulas.e}, {"A", m.formulas.a}, {"B", m.formulas.b}};
 }
+Json constants_of(const VisibilityModel& m) { return {{"dark", m.dark}, {"open", m.open}}; }
+Json constants_of(const VisibilityAoModel& m) { return {{"dark", m.dark}, {"open", m.open}}; }
+Json constants_of(const VisibilityNormalModel&) { return Json::object(); }
+Json constants_of(const MeanEscapeModel& m) { return {{"mean_escape", m.mean_escape}}; }
+Json constants_of(const BounceMapModel& m) { return {{"bounce_albedo", m.bounce_albedo}}; }
+Json constants_of(const JimenezModel& m) { return {{"parameters", m.parameters}}; }
 
-Json json_from_model(const ReportModel& model, const Score* score) {
-  const auto text = [&](Language language) { return shader_text(any_model(model.model), language, model.origin); };
+Json json_from_model(const ReportModel& model, const std::optional<Score>& score) {
+  const auto text = [&](Language language) { return shader_text(model.model, language, model.origin); };
   return {{"id", model.id},
           {"title", model.title},
-          {"constants", constants_of(model.model)},
+          {"constants", std::visit([](const auto& m) { return constants_of(m); }, model.model)},
           {"shader",
            {{"glsl", text(Language::kGlsl)}, {"hlsl", text(Language::kHlsl)}, {"cpp", text(Language::kCpp)}}},
-          {"score", score ? json_from_score(*score) : Json()}};
+          {"score", json_from_score(score)}};
 }
 
 }  // namespace
@@ -114,10 +141,11 @@ Json json_from_report(const ReportFolder& folder, std::span<const ReportModel> m
   json["fits"] = folder.fits ? json_from_fits(*folder.fits) : Json();
   json["models"] = Json::array();
   for (size_t m = 0; m < models.size(); ++m)
-    json["models"].push_back(json_from_model(models[m], data.scores.empty() ? nullptr : &data.scores[m]));
+    json["models"].push_back(json_from_model(models[m], data.scores[m]));
   json["other_models"] = Json::array();
   for (const OtherModel& other : data.other_models)
-    json["other_models"].push_back({{"title", other.title}, {"score", json_from_score(other.score)}});
+    json["other_models"].push_back(
+        {{"id", other.id}, {"title", other.title}, {"score", json_from_score(other.score)}});
   json["check"] = folder.check;
   json["run"] = folder.run;
   json["trade"] = folder.trade;
@@ -136,7 +164,9 @@ Json json_from_probes(std::span<const ReportProbe> probes, std::span<const Repor
   Json list = Json::array();
   for (const ReportProbe& probe : probes) {
     Json& json = list.emplace_back(
-        Json{{"x", probe.x}, {"y", probe.y}, {"ao", probe.ao}, {"irradiance", probe.irradiance}});
+        Json{{"x", probe.x}, {"y", probe.y}, {"ao", probe.ao}, {"visibility", probe.visibility}});
+    if (probe.bounce) json["bounce"] = *probe.bounce;
+    json["irradiance"] = probe.irradiance;
     for (size_t m = 0; m < models.size(); ++m) json["models"][models[m].id] = probe.models[m];
     json["truth"] = probe.truth;
   }

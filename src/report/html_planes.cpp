@@ -15,6 +15,7 @@ namespace hemibake {
 namespace {
 
 constexpr double kLargestCode = 65535;
+constexpr const char* kIrradiance = "irradiance.";
 
 using Codes = Grid<uint16_t>;
 
@@ -62,33 +63,55 @@ std::string pack(const Codes& codes) {
   return base64(deflate_bytes(bytes));
 }
 
+bool is_irradiance(const PackedPlane& plane) { return plane.name.starts_with(kIrradiance); }
+
+// Sets the errors of `packed`. plane_error: the largest of each plane.
+void set_errors(const std::vector<Grid<float>>& kept, const std::vector<Codes>& codes,
+                const std::vector<double>& plane_error, PackedPlanes& packed) {
+  for (size_t p = 0; p < kept.size(); ++p) {
+    const PackedPlane& plane = packed.planes[p];
+    double& error = is_irradiance(plane)     ? packed.irradiance_error_over_pi
+                    : plane.name == "bounce" ? packed.bounce_error
+                                             : packed.ao_error;
+    error = std::max(error, is_irradiance(plane) ? plane_error[p] / kPi : plane_error[p]);
+  }
+  for (size_t i = 0; i < kept[0].size(); ++i) {
+    double sum = 0;
+    for (size_t p = 0; p < kept.size(); ++p)
+      if (is_irradiance(packed.planes[p])) sum += codes[p][i] * packed.planes[p].step - kept[p][i];
+    packed.total_error_over_pi = std::max(packed.total_error_over_pi, std::abs(sum) / kPi);
+  }
+}
+
 }  // namespace
 
 PackedPlanes pack_planes(const Bake& bake, int largest_side) {
   PackedPlanes packed;
   packed.stride = (std::max(bake.width, bake.height) + largest_side - 1) / largest_side;
   std::vector<Grid<float>> kept;
-  if (!bake.visible_fraction.empty()) {
-    kept.push_back(thin_out(bake.visible_fraction, packed.stride, "ao"));
-    packed.planes.push_back({"ao", 0, ""});
-  }
-  for (size_t b = 0; b < bake.irradiance.size(); ++b) {
-    packed.planes.push_back({fmt::format("irradiance.{:02}", b), 0, ""});
-    kept.push_back(thin_out(bake.irradiance[b], packed.stride, packed.planes.back().name));
-  }
+  const auto keep = [&](const Grid<float>& plane, const std::string& name) {
+    if (plane.empty()) return;
+    kept.push_back(thin_out(plane, packed.stride, name));
+    packed.planes.push_back({name, 0, ""});
+  };
+  keep(bake.visible_fraction, "ao");
+  for (size_t b = 0; b < bake.irradiance.size(); ++b)
+    keep(bake.irradiance[b], fmt::format("{}{:02}", kIrradiance, b));
+  keep(bake.bounce, "bounce");
+  if (bake.irradiance.empty()) keep(bake.visibility, "visibility");
   if (kept.empty()) return packed;
   packed.width = kept[0].width;
   packed.height = kept[0].height;
 
   // One step for all bounces: the late ones, which are small, then need few bits. E of a cone or of a march
   // may exceed π a little.
-  double ao_largest = 1, irradiance_largest = kPi;
-  for (size_t p = 0; p < kept.size(); ++p) {
-    double& bound = packed.planes[p].name == "ao" ? ao_largest : irradiance_largest;
-    bound = std::max(bound, largest(kept[p]));
-  }
-  for (PackedPlane& plane : packed.planes)
-    plane.step = (plane.name == "ao" ? ao_largest : irradiance_largest) / kLargestCode;
+  double irradiance_largest = kPi;
+  for (size_t p = 0; p < kept.size(); ++p)
+    if (is_irradiance(packed.planes[p])) irradiance_largest = std::max(irradiance_largest, largest(kept[p]));
+  for (size_t p = 0; p < kept.size(); ++p)
+    packed.planes[p].step =
+        (is_irradiance(packed.planes[p]) ? irradiance_largest : std::max(1.0, largest(kept[p]))) /
+        kLargestCode;
 
   std::vector<double> plane_error(kept.size());
   std::vector<Codes> codes(kept.size());
@@ -101,16 +124,7 @@ PackedPlanes pack_planes(const Bake& bake, int largest_side) {
       packed.planes[p].base64 = pack(codes[p]);
     }
   });
-  for (size_t p = 0; p < kept.size(); ++p) {
-    double& error = packed.planes[p].name == "ao" ? packed.ao_error : packed.irradiance_error_over_pi;
-    error = std::max(error, packed.planes[p].name == "ao" ? plane_error[p] : plane_error[p] / kPi);
-  }
-  for (size_t i = 0; i < kept[0].size(); ++i) {
-    double sum = 0;
-    for (size_t p = 0; p < kept.size(); ++p)
-      if (packed.planes[p].name != "ao") sum += codes[p][i] * packed.planes[p].step - kept[p][i];
-    packed.total_error_over_pi = std::max(packed.total_error_over_pi, std::abs(sum) / kPi);
-  }
+  set_errors(kept, codes, plane_error, packed);
   return packed;
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "textures/bounce_map.h"
 #include "textures/light.h"
 
 namespace hemibake {
@@ -153,11 +154,27 @@ std::vector<Layer> make_layers(const Bake& bake, const TextureSettings& settings
   return packed_layers(bake, settings, kind, packed);
 }
 
+bool chooses_steps(const Bake& bake, const TextureSettings& settings, TextureKind kind) {
+  if (settings.coding.format != TextureFormat::kPng8 || settings.coding.dither || !knows_mapped_light(bake))
+    return false;
+  if (kind == TextureKind::kBounceMap) return true;
+  return (kind == TextureKind::kVisibility || kind == TextureKind::kBounce) &&
+         settings.wants(TextureKind::kVisibility) && settings.wants(TextureKind::kBounce);
+}
+
 std::string describe_texture(const Bake& bake, const TextureSettings& settings, TextureKind kind) {
+  const bool chosen = chooses_steps(bake, settings, kind);
   switch (kind) {
+    case TextureKind::kVisibility:
+      return describe_occlusion(bake, kind) +
+             (chosen ? "; bytes chosen together with the bounce texture's" : "");
+    case TextureKind::kBounce:
+      return describe_occlusion(bake, kind) +
+             (chosen ? "; bytes chosen together with the visibility texture's" : "");
     case TextureKind::kBounceMap:
-      return fmt::format("R: {}; G: {}", describe_occlusion(bake, TextureKind::kVisibility),
-                         describe_occlusion(bake, TextureKind::kBounce));
+      return fmt::format("R: {}; G: {}{}", describe_occlusion(bake, TextureKind::kVisibility),
+                         describe_occlusion(bake, TextureKind::kBounce),
+                         chosen ? "; bytes chosen together" : "");
     case TextureKind::kBent:
       return describe_bent(settings.bent_length);
     case TextureKind::kNormal:

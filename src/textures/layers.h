@@ -29,6 +29,10 @@ PackedInputs read_packed_inputs(const TextureSettings& settings, int width, int 
 std::vector<Layer> make_layers(const Bake& bake, const TextureSettings& settings, TextureKind kind,
                                const PackedInputs& packed);
 
+// Returns whether the steps of a texture are chosen together with those of the other half of a bounce map: of
+// 8 bits without dither, where both halves are written and the light at other albedos is known.
+bool chooses_steps(const Bake& bake, const TextureSettings& settings, TextureKind kind);
+
 // Returns in one line what the texture holds: "cosine-weighted visible fraction V = E0/pi".
 std::string describe_texture(const Bake& bake, const TextureSettings& settings, TextureKind kind);
 

@@ -7,6 +7,31 @@
 #include "transport/series.h"
 
 namespace hemibake {
+namespace {
+
+double last_power(const Bake& bake, double albedo) { return std::pow(albedo, bake.irradiance.size() - 1); }
+
+// Returns the bounce before the last, at albedo 1, with which the tail leads to the plane `bounce`.
+double before_last_by_plane(const Bake& bake, size_t texel) {
+  const double albedo = bake.bounce_albedo;
+  const double last = static_cast<double>(bake.irradiance.back()[texel]);
+  const double tail =
+      kPi * static_cast<double>(bake.bounce[texel]) - sum_bounces(bake.irradiance, texel, albedo);
+  return tail > 0 ? albedo * last * (1 + last_power(bake, albedo) * last / tail) : 0;
+}
+
+// before: the bounce before the last at albedo 1; the tail goes on with its ratio to the last. albedo: above
+// 0.
+double sum_with_tail(const Bake& bake, size_t texel, double albedo, double before) {
+  const double power = last_power(bake, albedo);
+  const double sum = sum_bounces(bake.irradiance, texel, albedo);
+  const double under_way = albedo * power * (kPi - sum_bounces(bake.irradiance, texel, 1));
+  const double tail = series_tail(
+      power / albedo * before, power * static_cast<double>(bake.irradiance.back()[texel]), albedo, under_way);
+  return std::clamp((sum + tail) / kPi, visibility_at(bake, texel), 1.0);
+}
+
+}  // namespace
 
 double bounce_albedo_of(const Bake& bake) {
   return bake.bounce.empty() ? kUsualBounceAlbedo : bake.bounce_albedo;
@@ -19,16 +44,14 @@ double visibility_at(const Bake& bake, size_t texel) {
 }
 
 double irradiance_at(const Bake& bake, size_t texel, double albedo) {
-  const double visibility = visibility_at(bake, texel);
-  if (albedo == 0) return visibility;
-  const size_t count = bake.irradiance.size();
-  const double sum = sum_bounces(bake.irradiance, texel, albedo);
-  const double last_power = std::pow(albedo, count - 1);
-  const double under_way = albedo * last_power * (kPi - sum_bounces(bake.irradiance, texel, 1));
-  const double tail =
-      series_tail(last_power / albedo * static_cast<double>(bake.irradiance[count - 2][texel]),
-                  last_power * static_cast<double>(bake.irradiance[count - 1][texel]), albedo, under_way);
-  return std::clamp((sum + tail) / kPi, visibility, 1.0);
+  if (albedo == 0) return visibility_at(bake, texel);
+  if (bake.bounce.empty()) return irradiance_by_bounces(bake, texel, albedo);
+  return sum_with_tail(bake, texel, albedo, before_last_by_plane(bake, texel));
+}
+
+double irradiance_by_bounces(const Bake& bake, size_t texel, double albedo) {
+  const Grid<float>& before = bake.irradiance[bake.irradiance.size() - 2];
+  return sum_with_tail(bake, texel, albedo, static_cast<double>(before[texel]));
 }
 
 double bounce_at(const Bake& bake, size_t texel) {

@@ -9,6 +9,7 @@
 
 #include "bake/record.h"
 #include "io/output_file.h"
+#include "textures/bounce_map.h"
 #include "textures/layers.h"
 #include "textures/light.h"
 #include "textures/planes.h"
@@ -36,6 +37,28 @@ Provenance record_texture(const Provenance& of_bake, const Bake& bake, const Tex
   return p;
 }
 
+// Puts the chosen steps in the place of V and of the light at the bounce albedo.
+void store_chosen(const BounceMap& chosen, TextureKind kind, std::vector<Layer>& layers) {
+  layers[0].values = kind == TextureKind::kBounce ? chosen.bounce : chosen.visibility;
+  if (kind == TextureKind::kBounceMap) layers[1].values = chosen.bounce;
+}
+
+std::optional<BounceMap> chosen_bounce_map(const Bake& bake, const TextureSettings& settings) {
+  const auto is_chosen = [&](TextureKind kind) { return chooses_steps(bake, settings, kind); };
+  if (std::ranges::none_of(settings.kinds, is_chosen)) return std::nullopt;
+  const int steps = (1 << texture_format_info(settings.coding.format).bits) - 1;
+  return choose_bounce_map(bake.width, bake.height, steps, bake.bounce_albedo,
+                           [&](size_t texel) { return mapped_light_at(bake, texel); });
+}
+
+// Returns whether a texture is, or is the second half of, a bounce map whose loss is known.
+bool completes_bounce_map(const TextureSettings& settings, TextureKind kind) {
+  if (settings.coding.dither) return false;
+  if (kind == TextureKind::kBounceMap) return true;
+  return kind == TextureKind::kBounce && settings.wants(TextureKind::kVisibility) &&
+         !settings.wants(TextureKind::kBounceMap);
+}
+
 ChannelRange range_of(const Layer& layer) {
   ChannelRange range{layer.channel, 1, 0, 0};
   for (const float value : layer.values.values) {
@@ -61,12 +84,15 @@ std::vector<WrittenTexture> make_textures(const Bake& bake, const Provenance& pr
   check_planes(bake, settings);
   const PackedInputs packed = read_packed_inputs(settings, bake.width, bake.height);
   const std::vector<std::filesystem::path> paths = texture_paths(settings, folder, name);
+  const std::optional<BounceMap> chosen = chosen_bounce_map(bake, settings);
   std::vector<std::unique_ptr<OutputFile>> files;
   std::vector<WrittenTexture> written;
   for (size_t t = 0; t < paths.size(); ++t) {
     const TextureKind kind = settings.kinds[t];
-    const std::vector<Layer> layers = make_layers(bake, settings, kind, packed);
-    WrittenTexture texture{kind, paths[t], describe_texture(bake, settings, kind), {}};
+    std::vector<Layer> layers = make_layers(bake, settings, kind, packed);
+    if (chooses_steps(bake, settings, kind)) store_chosen(*chosen, kind, layers);
+    WrittenTexture texture{kind, paths[t], describe_texture(bake, settings, kind), {}, {}};
+    if (completes_bounce_map(settings, kind)) texture.bounce_map = bounce_map_loss(bake);
     std::vector<Plane> planes;
     for (const Layer& layer : layers) {
       planes.push_back({layer.channel, layer.values.values.data()});

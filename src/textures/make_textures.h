@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "io/provenance.h"
+#include "textures/bounce_map_loss.h"
 #include "textures/settings.h"
 #include "transport/baked_planes.h"
 
@@ -21,6 +23,7 @@ struct WrittenTexture {
   std::filesystem::path path;
   std::string holds;  // in one line
   std::vector<ChannelRange> channels;
+  std::optional<BounceMapLoss> bounce_map;  // of the texture that makes one whole; not of dithered ones
 };
 
 // Records everything of the settings that decides the bytes of one texture. settings: resolved.

@@ -56,11 +56,11 @@ void expect_light(const Bake& bake, const Needs& needs) {
     expect_plane(bake, bake.visibility, "visibility");
   }
   const bool has_bounce_plane = !bake.bounce.empty();
-  if (needs.bounce_plane && has_bounce_plane) expect_plane(bake, bake.bounce, "bounce");
+  if ((needs.bounce_plane || needs.bounces) && has_bounce_plane) expect_plane(bake, bake.bounce, "bounce");
   const bool sums_bounces = needs.bounces || (needs.bounce_plane && !has_bounce_plane);
-  if (!sums_bounces) return;
-  if (bake.irradiance.size() < 2)
+  if (sums_bounces && bake.irradiance.size() < 2)
     throw InputError("has no bounces, expected channel irradiance.01 for the textures asked for");
+  if (!sums_bounces && !needs.bounce_plane) return;
   for (const Grid<float>& plane : bake.irradiance) expect_plane(bake, plane, "irradiance");
 }
 

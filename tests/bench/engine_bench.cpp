@@ -15,6 +15,7 @@
 #include "estimators/horizon.h"
 #include "model/model.h"
 #include "support/maps.h"
+#include "textures/bounce_map.h"
 #include "tracers/slice/slice.h"
 #include "transport/albedo_light.h"
 #include "transport/trace_surface.h"
@@ -22,20 +23,19 @@
 namespace hemibake {
 namespace {
 
-constexpr std::array kAlbedos = {0.2, 0.5, 0.8, 0.9, 0.95};
-constexpr double kBounceAlbedo = 0.9;
+constexpr std::array kAlbedos = kBounceMapAlbedos;
+constexpr size_t kBounceAlbedoIndex = 3;
+constexpr double kBounceAlbedo = kAlbedos[kBounceAlbedoIndex];
 
-// Holds V, α and the light at kBounceAlbedo of a texel, as a shader has them.
+// Holds V, α and the bounce map of a texel, as a shader has them.
 struct Texel {
-  double visibility, ao, bounce;
+  double visibility, ao, mapped_visibility, bounce;
 };
 
 struct Formula {
   std::string name;
   std::function<double(const Texel&, double albedo)> total;
 };
-
-double in_eight_bits(double value) { return std::round(value * 255) / 255; }
 
 std::vector<Formula> formulas() {
   return {
@@ -47,8 +47,7 @@ std::vector<Formula> formulas() {
        [](const Texel& t, double rho) { return VisibilityAoModel{}.total(t.visibility, t.ao, rho); }},
       {"bounce-map, 8 bits",
        [](const Texel& t, double rho) {
-         return BounceMapModel{kBounceAlbedo}.total(in_eight_bits(t.visibility), in_eight_bits(t.bounce),
-                                                    rho);
+         return BounceMapModel{kBounceAlbedo}.total(t.mapped_visibility, t.bounce, rho);
        }},
   };
 }
@@ -56,17 +55,29 @@ std::vector<Formula> formulas() {
 struct Truth {
   LightTransport transport;
   std::array<std::vector<double>, kAlbedos.size()> light;  // E/π
+  BounceMap bounce_map;                                    // in 8 bits, as `textures` writes it
 };
+
+// Returns the bounce map of the light, which the truth has already.
+BounceMap bounce_map_of(const Truth& truth) {
+  const Grid<float>& direct = truth.transport.direct_over_pi;
+  return choose_bounce_map(direct.width, direct.height, 255, kBounceAlbedo, [&](size_t texel) {
+    MappedLight mapped{static_cast<double>(direct[texel]), truth.light[kBounceAlbedoIndex][texel], {}};
+    for (size_t a = 0; a < kAlbedos.size(); ++a) mapped.irradiance[a] = truth.light[a][texel];
+    return mapped;
+  });
+}
 
 Truth trace(const Surface& surface) {
   SliceOptions slices;
   slices.azimuths = 64;
-  Truth truth{trace_surface(*make_slice_tracer(surface, slices), true), {}};
+  Truth truth{trace_surface(*make_slice_tracer(surface, slices), true), {}, {}};
   for (size_t a = 0; a < kAlbedos.size(); ++a) {
     const std::vector<float> albedo(truth.transport.patch_direct_over_pi.size(),
                                     static_cast<float>(kAlbedos[a]));
     truth.light[a] = bounce_with_albedo(truth.transport, albedo, {}).texel_light;
   }
+  truth.bounce_map = bounce_map_of(truth);
   return truth;
 }
 
@@ -78,7 +89,9 @@ Errors errors_of(const Formula& formula, const Truth& truth, const Grid<float>& 
   for (size_t a = 0; a < kAlbedos.size(); ++a) {
     double sum = 0;
     for (size_t i = 0; i < ao.size(); ++i) {
-      const Texel texel{static_cast<double>(visibility[i]), static_cast<double>(ao[i]), truth.light[3][i]};
+      const Texel texel{static_cast<double>(visibility[i]), static_cast<double>(ao[i]),
+                        static_cast<double>(truth.bounce_map.visibility[i]),
+                        static_cast<double>(truth.bounce_map.bounce[i])};
       const double error = formula.total(texel, kAlbedos[a]) - truth.light[a][i];
       sum += error * error;
     }

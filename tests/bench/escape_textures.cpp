@@ -5,26 +5,36 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <string>
 
 #include "model/closed_forms.h"
+#include "textures/bounce_map.h"
 
 namespace hemibake {
 namespace {
 
-// How the channels are stored: steps between 0 and 1, 0: float.
+// How the channels are stored, in this order: chosen together, filtered, rounded. Steps are those between 0
+// and 1, 0: float.
 struct Storage {
   const char* name;
   int steps;
-  int filter;           // box, texels a side
-  bool chosen = false;  // the steps of two channels near the truth that leave least at the model albedos
+  int filter;            // box, texels a side
+  int chosen_steps = 0;  // as `hemibake textures` writes bounce maps
 };
 
-constexpr Storage kStorages[] = {
-    {"float", 0, 1},         {"16 bits", 65535, 1},   {"8 bits", 255, 1},
-    {"2 ×", 0, 2},           {"4 ×", 0, 4},           {"8 ×", 0, 8},
-    {"8 bits, 2 ×", 255, 2}, {"8 bits, 4 ×", 255, 4}, {"8 bits, chosen", 255, 1, true}};
+constexpr Storage kStorages[] = {{"float", 0, 1},
+                                 {"16 bits", 65535, 1},
+                                 {"8 bits", 255, 1},
+                                 {"2 ×", 0, 2},
+                                 {"4 ×", 0, 4},
+                                 {"8 ×", 0, 8},
+                                 {"8 bits, 2 ×", 255, 2},
+                                 {"8 bits, 4 ×", 255, 4},
+                                 {"chosen", 0, 1, 255},
+                                 {"chosen, 2 ×", 0, 2, 255},
+                                 {"chosen, 4 ×", 0, 4, 255},
+                                 {"chosen, 8 ×", 0, 8, 255},
+                                 {"chosen, 4 × in 8 bits", 255, 4, 255}};
 
 Grid<float> stored(const Grid<float>& plane, const Storage& storage) {
   Grid<float> result = storage.filter > 1 ? box_filtered(plane, storage.filter) : plane;
@@ -42,7 +52,7 @@ size_t index_of(double albedo) {
 // A code: planes to store, and how a shader reads them.
 struct Code {
   std::string name;
-  int channels;
+  double bounce_albedo;  // of a bounce map, else 0
   std::function<std::vector<Grid<float>>(const MapTruth&)> planes;
   std::function<double(const std::vector<Grid<float>>&, size_t, double albedo)> total;
 };
@@ -56,14 +66,14 @@ double share_of(double visibility, double bounce, double albedo) {
 std::vector<Code> codes() {
   std::vector<Code> list;
   for (const double r : {0.8, 0.85, 0.9, 0.95})
-    list.push_back({fmt::format("V, E at {}", r), 2,
+    list.push_back({fmt::format("V, E at {}", r), r,
                     [r](const MapTruth& map) {
                       return std::vector{map.visibility, map.irradiance[index_of(r)]};
                     },
                     [r](const std::vector<Grid<float>>& p, size_t i, double albedo) {
                       return bounce_map_irradiance<double>(p[0][i], p[1][i], albedo, r);
                     }});
-  list.push_back({"V, g from E at 0.9", 2,
+  list.push_back({"V, g from E at 0.9", 0,
                   [](const MapTruth& map) {
                     Grid<float> share = map.visibility;
                     for (size_t i = 0; i < share.size(); ++i)
@@ -75,7 +85,7 @@ std::vector<Code> codes() {
                     return escape_irradiance<double, double>(p[0][i], p[1][i], albedo);
                   }});
   list.push_back(
-      {"V, E at 0.5, 0.9", 3,
+      {"V, E at 0.5, 0.9", 0,
        [](const MapTruth& map) {
          return std::vector{map.visibility, map.irradiance[index_of(0.5)], map.irradiance[index_of(0.9)]};
        },
@@ -87,28 +97,16 @@ std::vector<Code> codes() {
   return list;
 }
 
-// Chooses the steps of two channels: V within one, the other within three.
-void choose_steps(const Code& code, const MapTruth& map, int steps, std::vector<Grid<float>>& planes) {
-  const double step = 1.0 / steps;
-  std::vector<Grid<float>> tried = {Grid<float>(1, 1), Grid<float>(1, 1)};
-  for (size_t i = 0; i < map.size(); ++i) {
-    const double first = planes[0][i], second = planes[1][i];
-    double least = std::numeric_limits<double>::infinity();
-    for (int v = -1; v <= 1; ++v) {
-      for (int b = -3; b <= 3; ++b) {
-        tried[0][0] = static_cast<float>(std::clamp(first + v * step, 0.0, 1.0));
-        tried[1][0] = static_cast<float>(std::clamp(second + b * step, 0.0, 1.0));
-        double squares = (tried[0][0] - map.visibility[i]) * (tried[0][0] - map.visibility[i]);
-        for (size_t a = 0; a < kModelAlbedos; ++a) {
-          const double error = code.total(tried, 0, kTruthAlbedos[a]) - map.irradiance[a][i];
-          squares += error * error;
-        }
-        if (squares >= least) continue;
-        least = squares;
-        planes[0][i] = tried[0][0], planes[1][i] = tried[1][0];
-      }
-    }
-  }
+std::vector<Grid<float>> chosen_planes(const Code& code, const MapTruth& map, int steps) {
+  static_assert(kModelAlbedos == kBounceMapAlbedos.size());
+  const LightOfTexel light = [&](size_t i) {
+    MappedLight texel{map.visibility[i], map.irradiance[index_of(code.bounce_albedo)][i], {}};
+    for (size_t a = 0; a < kModelAlbedos; ++a) texel.irradiance[a] = map.irradiance[a][i];
+    return texel;
+  };
+  BounceMap chosen =
+      choose_bounce_map(map.visibility.width, map.visibility.height, steps, code.bounce_albedo, light);
+  return {std::move(chosen.visibility), std::move(chosen.bounce)};
 }
 
 // What a code leaves, over maps and the model albedos.
@@ -129,9 +127,9 @@ Left measure(const Code& code, const Storage& storage, const std::vector<MapTrut
   double deep_squares = 0;
   size_t deep_count = 0;
   for (const MapTruth& map : maps) {
-    std::vector<Grid<float>> planes = code.planes(map);
+    std::vector<Grid<float>> planes =
+        storage.chosen_steps > 0 ? chosen_planes(code, map, storage.chosen_steps) : code.planes(map);
     for (Grid<float>& plane : planes) plane = stored(plane, storage);
-    if (storage.chosen) choose_steps(code, map, storage.steps, planes);
     const Grid<float> escape = box_filtered(map.escape, storage.filter);
     double map_mean = 0;
     for (size_t a = 0; a < kTruthAlbedos.size(); ++a) {
@@ -187,7 +185,7 @@ void print_textures(const std::vector<MapTruth>& all) {
       "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   for (const Code& code : codes()) {
     for (const Storage& storage : kStorages) {
-      if (storage.chosen && code.channels != 2) continue;
+      if (storage.chosen_steps > 0 && code.bounce_albedo == 0) continue;
       const Left left = measure(code, storage, all);
       fmt::print("| {} | {} | {:.4f} | {:.4f} | {:.4f} {} | {:.3f} | {:.3f} | {:.4f} |", code.name,
                  storage.name, measure(code, storage, usual).mean, left.mean, left.worst, left.worst_map,

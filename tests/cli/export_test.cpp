@@ -50,9 +50,9 @@ class Export : public testing::Test {
 
 TEST_F(Export, EveryLanguageAndModel) {
   for (const std::string language : {"glsl", "hlsl", "wgsl", "msl", "osl", "cpp"}) {
-    for (const std::string model :
-         {"visibility", "visibility-ao", "bounce-map", "bounded", "published", "jimenez"}) {
-      const bool fitted = model == "bounded" || model == "published";
+    for (const std::string model : {"visibility", "visibility-normal", "visibility-ao", "visibility-ao-mean",
+                                    "bounce-map", "bounded", "published", "jimenez"}) {
+      const bool fitted = model == "bounded" || model == "published" || model == "visibility-ao-mean";
       const CommandOutcome outcome = run(fmt::format("export {} --to {} --model {} -o out.txt --json",
                                                      fitted ? "f.json" : "none", language, model));
       EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -112,6 +112,76 @@ TEST_F(Export, ConstantsAreThoseOfTheFit) {
   EXPECT_EQ(albedo_of("v.json --bounce-albedo 0.5"), 0.5);
 }
 
+// m is that of the map; of several their mean, or that of the one named; or a given number.
+TEST_F(Export, MeanEscapeIsThatOfTheMap) {
+  const nlohmann::json single = nlohmann::json::parse(read_bytes(folder_ / "f.json"));
+  nlohmann::ordered_json several = single;
+  several["maps"] = {{{"map", "wall"}, {"mean_escape", 0.25}},
+                     {{"map", "floor"}, {"mean_escape", 0.5}},
+                     {{"map", "unknown"}, {"mean_escape", nullptr}}};
+  write_bytes(folder_ / "s.json", several.dump());
+  const auto expect_text = [&](const std::string& arguments, double m, const std::string& line) {
+    const CommandOutcome outcome = run("export " + arguments + " -o m.glsl --model visibility-ao-mean");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::string text = read_bytes(folder_ / "m.glsl"), name = "hemibake_mean_escape = ";
+    EXPECT_NEAR(std::stod(text.substr(text.find(name) + name.size())), m, 1e-8) << text;
+    EXPECT_NE(text.find("// mean_escape: " + line + "\n"), std::string::npos) << text;
+  };
+  expect_text("f.json", single["maps"][0]["mean_escape"], "of c.");
+  expect_text("s.json", 0.375, "the mean of wall, floor.");
+  expect_text("s.json --map floor", 0.5, "of floor.");
+  expect_text("s.json --mean-escape 0.125", 0.125, "as given.");
+  expect_text("none --mean-escape 1", 1, "as given.");
+  expect_text("s.json --constants none --mean-escape 0", 0, "as given.");
+}
+
+TEST_F(Export, MeanEscapeThatIsUnknownIsRefused) {
+  const std::string wanted =
+      "no mean escape share of a map, expected FIT.json as 'hemibake fit' writes it of a bake or of curves "
+      "with counts, or --mean-escape";
+  const std::string mean = " --model visibility-ao-mean --to glsl -o out.txt";
+  expect_failure("export none" + mean, "none: " + wanted);
+  expect_failure("export f.json --constants none" + mean, "f.json: " + wanted);
+  expect_failure("export f.json --map d" + mean, "--map: no map 'd' in f.json, expected one of c");
+  expect_failure("export f.json --map c --mean-escape 0.5" + mean,
+                 "--map: --mean-escape gives the number already, expected one of them");
+  expect_failure("export f.json --mean-escape 0.5 --to glsl -o out.txt",
+                 "--mean-escape: the model bounded takes none, expected --model visibility-ao-mean");
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_bytes(folder_ / "f.json"));
+  json["maps"][0]["mean_escape"] = 1.5;
+  write_bytes(folder_ / "bad.json", json.dump());
+  expect_failure("export bad.json" + mean, "bad.json: maps: mean_escape of c is 1.5, expected 0 to 1");
+  json.erase("maps");
+  write_bytes(folder_ / "old.json", json.dump());
+  expect_failure("export old.json" + mean, "old.json: " + wanted);
+}
+
+// `check` judges each model that `export` makes of the file, and names what is on its bound.
+TEST_F(Export, CheckJudgesTheEscapeModels) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_bytes(folder_ / "f.json"));
+  json["visibility"]["parameters"]["dark"] = {{"value", 0}, {"stderr", nullptr}, {"on_bound", true}};
+  write_bytes(folder_ / "c.json", json.dump());
+  const CommandOutcome outcome = run("check c.json --json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.out << outcome.err;
+  std::map<std::string, std::string> details;
+  const nlohmann::json checks = nlohmann::json::parse(outcome.out).at("checks");
+  for (const nlohmann::json& check : checks) details[check.at("quantity")] = check.at("detail");
+  const std::string m = fmt::format("{:.3g}", json["maps"][0]["mean_escape"].get<double>());
+  for (const std::string& model :
+       {std::string("visibility"), std::string("visibility-ao"), "visibility-ao-mean, m = " + m})
+    for (const char* quantity : {"total outside [V, 1], worst", "total falls with albedo, worst",
+                                 "off V at albedo 0, off 1 at albedo 1, worst"})
+      EXPECT_TRUE(details.contains(model + ": " + quantity)) << model << ": " << quantity;
+  EXPECT_EQ(details.at("visibility: dark and its error are numbers"), "on its bound");
+  EXPECT_EQ(details.at("visibility: open and its error are numbers"), "");
+  json["visibility_ao"]["parameters"]["open"]["value"] = 1.25;
+  write_bytes(folder_ / "c.json", json.dump());
+  const CommandOutcome refused = run("check c.json");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_NE(refused.err.find("c.json: open of visibility and ao is 1.25, expected 0 to 1"), std::string::npos)
+      << refused.err;
+}
+
 TEST_F(Export, TablesOfTwoInputsAreLong) {
   ASSERT_EQ(run("export none --model visibility-ao -o t.csv").exit_code, 0);
   const Table table = read_csv(folder_ / "t.csv");
@@ -123,6 +193,8 @@ TEST_F(Export, TablesOfTwoInputsAreLong) {
     EXPECT_NEAR(row[half].value(), VisibilityAoModel{}.total(row[0].value(), row[1].value(), 0.5), 1e-12);
   ASSERT_EQ(run("export none --model bounce-map -o t.csv").exit_code, 0);
   EXPECT_EQ(read_csv(folder_ / "t.csv").columns[1], "bounce");
+  ASSERT_EQ(run("export none --model visibility-normal -o t.csv").exit_code, 0);
+  EXPECT_EQ(read_csv(folder_ / "t.csv").columns[1], "normal_z");
 }
 
 TEST_F(Export, TableHoldsTheModel) {

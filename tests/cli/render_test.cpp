@@ -54,20 +54,45 @@ TEST_F(Render, EverythingOfABake) {
   for (const auto& entry : json.at("pictures"))
     for (const auto& file : entry.at("files"))
       EXPECT_TRUE(fs::is_regular_file(folder_.path() / "out" / file.get<std::string>())) << file;
-  for (const char* name :
-       {"ao_only", "model", "truth", "triptych", "difference_model", "bounce_00", "bounces", "saturation",
-        "energy", "ao", "bent_normals", "estimators", "view_truth", "overview"})
+  for (const char* name : {"ao_only",
+                           "visibility_only",
+                           "model",
+                           "bounce_map",
+                           "truth",
+                           "triptych",
+                           "difference_bounce_map",
+                           "difference_visibility_only",
+                           "visibility",
+                           "bounce",
+                           "difference_model",
+                           "bounce_00",
+                           "bounces",
+                           "saturation",
+                           "energy",
+                           "ao",
+                           "bent_normals",
+                           "estimators",
+                           "view_truth",
+                           "overview"})
     EXPECT_THAT(names_of(json.at("pictures")), Contains(name));
   // ρE/π of the bake's own channels.
   const Bake bake = read_bake(folder_ / "bake.exr").bake;
   const Grid<glm::vec3> ao_only = picture("out/ao_only.exr"), direct = picture("out/bounce_00.exr");
+  const Grid<glm::vec3> visibility_only = picture("out/visibility_only.exr"),
+                        bounce_map = picture("out/bounce_map.exr");
   for (size_t i = 0; i < ao_only.size(); ++i) {
     EXPECT_NEAR(ao_only[i].y, 0.6 * bake.visible_fraction[i], 1e-6);
+    EXPECT_NEAR(visibility_only[i].y, 0.6 * bake.visibility[i], 1e-6);
+    // At the albedo of the map's second texture, .9, the light is that texture.
+    EXPECT_NEAR(bounce_map[i].x, 0.9 * bake.bounce[i], 1e-6);
     EXPECT_NEAR(direct[i].z, 0.2 * bake.irradiance[0][i] / kPi, 1e-6);
   }
   EXPECT_LT(std::abs(json["errors"]["model"]["bias_over_mean"].get<double>()),
             std::abs(json["errors"]["ao_only"]["bias_over_mean"].get<double>()))
       << "the model is nearer to the truth than AO alone";
+  EXPECT_LT(json["errors"]["bounce_map"]["rms_over_mean"].get<double>(),
+            json["errors"]["model"]["rms_over_mean"].get<double>())
+      << "two textures tell more than one";
   EXPECT_TRUE(json.at("pictures")[0].contains("clipped_above_white"));
 }
 
@@ -111,6 +136,76 @@ TEST_F(Render, ConstantAlbedoMapIsPowersOfAlbedo) {
   // Links read back are the same to 10⁻⁴ of their quantum, which is a twelfth of the mean weight
   // or less.
   EXPECT_LT(difference("again/truth.exr", "links/truth.exr"), 1e-4 / 12);
+}
+
+// Every model by its formula, with an albedo map: each texel counts with its own albedo.
+TEST_F(Render, ModelsOfVisibilityAndTheBounceMap) {
+  make_bake();
+  Grid<glm::vec3> albedo(20, 16);
+  for (size_t i = 0; i < albedo.size(); ++i)
+    albedo[i] = glm::vec3(0.1f, 0.5f, 0.9f) + 0.1f * (static_cast<float>(i % 7) / 7);
+  write_colors("albedo.exr", albedo);
+  const Bake bake = read_bake(folder_ / "bake.exr").bake;
+  const auto expect_light = [&](const std::string& options, const auto& light) {
+    const nlohmann::json json = run_json(
+        "render bake.exr -o out --links links.h5 --albedo albedo.exr --pictures light,saturation " + options);
+    EXPECT_THAT(names_of(json.at("pictures")),
+                AllOf(Contains("model"), Contains("saturation"), Contains("tau")));
+    const Grid<glm::vec3> model = picture("out/model.exr");
+    for (size_t i = 0; i < model.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(model[i][c], albedo[i][c] * light(i, double{albedo[i][c]}), 1e-6) << options;
+  };
+  const auto escaping = [&](size_t i, double g, double rho) {
+    return 1 - (1 - double{bake.visibility[i]}) * (1 - rho) / (1 - rho + rho * g);
+  };
+  expect_light("--model visibility --constants none",
+               [&](size_t i, double rho) { return escaping(i, double{bake.visibility[i]}, rho); });
+  expect_light("--model visibility-ao --constants none",
+               [&](size_t i, double rho) { return escaping(i, double{bake.visible_fraction[i]}, rho); });
+  expect_light("--model visibility-normal", [&](size_t i, double rho) {
+    return escaping(i, std::min(1.0, double{bake.visibility[i]} * (1.3 - 0.6 * double{bake.normals[i].z})),
+                    rho);
+  });
+  double sum = 0, squares = 0;
+  for (const float v : bake.visibility.values) sum += double{v}, squares += double{v} * double{v};
+  const double m = (sum - squares) / (static_cast<double>(bake.visibility.size()) - sum);
+  expect_light("--model visibility-ao-mean", [&](size_t i, double rho) {
+    const double ao = bake.visible_fraction[i];
+    return escaping(i, ao * (1 + m) / (1 + ao), rho);
+  });
+  // The g with which the light at .9 is that of the map.
+  expect_light("--model bounce-map", [&](size_t i, double rho) {
+    const double blocked = 1 - double{bake.visibility[i]}, missing = 1 - double{bake.bounce[i]};
+    return escaping(i, missing > 0 ? (0.1 / 0.9) * (blocked - missing) / missing : 1, rho);
+  });
+  // The second picture of the bounce map would be the same as the model's.
+  EXPECT_FALSE(fs::exists(folder_ / "out" / "bounce_map.exr"));
+  // Fitted to the map it is no farther from the truth than without constants.
+  const auto rms_of = [&](const std::string& options) {
+    return run_json("render bake.exr -o out --pictures light " + options)["errors"]["model"]["rms_over_mean"]
+        .get<double>();
+  };
+  EXPECT_LT(rms_of("--model visibility"), 1.2 * rms_of("--model visibility --constants none"));
+  EXPECT_LT(rms_of("--model jimenez"), 0.1);
+  EXPECT_LT(rms_of("--model bounce-map"), rms_of("--model visibility-ao"));
+}
+
+// Bakes of older versions have neither V by name nor the bounce map.
+TEST_F(Render, BakesOfOlderVersions) {
+  make_bake();
+  run_well("render bake.exr -o new --pictures light --model visibility-ao");
+  BakeFile file = read_bake(folder_ / "bake.exr");
+  file.bake.visibility = file.bake.bounce = {};
+  write_bake(folder_ / "old.exr", file.bake, file.provenance);
+  const nlohmann::json json = run_json("render old.exr -o old --pictures light,planes --model visibility-ao");
+  EXPECT_THAT(names_of(json.at("missing")), testing::UnorderedElementsAre("bounce_map", "bounce"));
+  EXPECT_LT(difference("new/visibility_only.exr", "old/visibility_only.exr"), 1e-6);
+  // The curves of the fits take V from the same light.
+  EXPECT_LT(difference("new/model.exr", "old/model.exr"), 1e-6);
+  expect_refusal("render old.exr -o none --model bounce-map",
+                 "old.exr: has no plane bounce, expected the bounce map of a bake with --bounce-albedo");
+  EXPECT_FALSE(fs::exists(folder_ / "none"));
 }
 
 // Light reflected by a neighbour has the neighbour's colour: a black and red checker reflects no green.
@@ -213,6 +308,9 @@ TEST_F(Render, Extremes) {
   for (const std::string amplitude : {"0", "1e-6", "1e3"}) {
     make_bake("--amplitude " + amplitude);
     run_well("render bake.exr -o out --view-width 32 --sun 10,20,1e6");
+    for (const char* model : {"visibility-ao", "bounce-map", "visibility --constants none"})
+      run_well(fmt::format(
+          "render bake.exr -o out --pictures light,saturation --albedo 0,0.999999,1 --model {}", model));
   }
   write_map("one.exr", Grid<float>(1, 1, 0.5f));
   run_well("bake one.exr -o one_bake.exr --rays 16");
@@ -257,6 +355,7 @@ TEST_F(Render, BadInput) {
   expect("bake.exr -o out --sun 0,0,1", StartsWith("--sun: "));
   expect("bake.exr -o out --sun 0,nan,1", StartsWith("--sun: "));
   expect("bake.exr -o out --camera 0,1", StartsWith("--camera: "));
+  expect("bake.exr -o out --constants none", StartsWith("--constants: the model bounded has none"));
   expect("bake.exr -o out --fit few.txt", StartsWith("few.txt"));
   expect("bake.exr -o out --albedo bright.exr --links other.h5", testing::_);
   expect("bake.exr -o out --sun 1,1,1 --links other.h5", StartsWith("other.h5: is of another map"));

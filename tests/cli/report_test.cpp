@@ -51,6 +51,16 @@ TEST_F(Report, SaysWhatThePageShouldShow) {
     EXPECT_NEAR(probe.at("truth").at(2).get<double>(), bake.irradiance[0][texel] / kPi, 1e-12);
     for (const char* model : {"bounded", "published", "notes"})
       EXPECT_EQ(probe.at("models").at(model).size(), 3U);
+    const double visibility = probe.at("visibility"), bounce = probe.at("bounce");
+    EXPECT_EQ(visibility, bake.visibility[texel]);
+    EXPECT_EQ(bounce, bake.bounce[texel]);
+    // At the albedo of the map, .9, its light is the map's; at 0 all is V.
+    EXPECT_NEAR(probe.at("models").at("bounce-map").at(0).get<double>(), bounce, 1e-12);
+    for (const char* model : {"bounce-map", "visibility", "visibility-ao"})
+      EXPECT_NEAR(probe.at("models").at(model).at(2).get<double>(), visibility, 1e-12);
+    const auto escaping = [&](double g) { return 1 - (1 - visibility) * 0.5 / (0.5 + 0.5 * g); };
+    EXPECT_NEAR(probe.at("models").at("visibility").at(1).get<double>(), escaping(visibility), 1e-12);
+    EXPECT_NEAR(probe.at("models").at("visibility-ao").at(1).get<double>(), escaping(probe.at("ao")), 1e-12);
   }
   EXPECT_LE(said.at("total_error_over_pi"), 21 * 0.5 / 65535 * 1.001);
 }
@@ -87,6 +97,25 @@ TEST_F(Report, TakesWhatIsThere) {
   std::filesystem::create_directory(folder_ / "light");
   run_well("bake map.exr -o light/bake.exr --outputs irradiance --rays 16");
   run_well("report light");
+}
+
+// Folders of older versions: V is E₀/π, and there is no bounce map.
+TEST_F(Report, BakesOfOlderVersions) {
+  bake("out");
+  BakeFile file = read_bake(folder_ / "out/bake.exr");
+  const std::vector<float> visibility = file.bake.visibility.values;
+  file.bake.visibility = file.bake.bounce = {};
+  write_bake(folder_ / "out/bake.exr", file.bake, file.provenance);
+  const json said = run_json("report out");
+  EXPECT_THAT(page("out"), Not(HasSubstr("\"id\":\"bounce-map\"")));
+  EXPECT_THAT(page("out"), HasSubstr("\"mean_visibility\":0."));
+  for (const json& probe : said.at("probes")) {
+    const size_t texel = file.bake.visible_fraction.index(probe.at("x"), probe.at("y"));
+    EXPECT_NEAR(probe.at("visibility").get<double>(), visibility[texel], 1e-7);
+    EXPECT_FALSE(probe.contains("bounce"));
+    EXPECT_FALSE(probe.at("models").contains("bounce-map"));
+    EXPECT_TRUE(probe.at("models").contains("visibility-ao"));
+  }
 }
 
 TEST_F(Report, FindsTheSweep) {

@@ -158,7 +158,7 @@ TEST(ShadedScene, NoAoDarkensTheSun) {
   for (size_t i = 0; i < 3; ++i) scene.bake.visible_fraction[i] = 0.5f * static_cast<float>(i);
   scene.albedo.constant = {0.5f, 0.25f, 1};
   scene.sky = Grid<glm::vec3>(3, 1, glm::vec3(2));
-  const auto half = [](double ao, double albedo) { return ao * albedo; };
+  const auto half = [](const TexelInputs& at, double albedo) { return at.ao * albedo; };
   const Grid<glm::vec3> ao_before = shade_ao_only(scene), model_before = shade_with(scene, half);
   scene.sun = Grid<glm::vec3>(3, 1, glm::vec3(4));
   const Grid<glm::vec3> ao_after = shade_ao_only(scene), model_after = shade_with(scene, half);

@@ -34,5 +34,34 @@ TEST(ClosedForms, FirstBounceIsTheGeneralFormWithAQuarter) {
   }
 }
 
+// g is α where α = m, nearer to m elsewhere, in 0..1, and rises with both.
+TEST(ClosedForms, MeanEscapeShareDrawsAoTowardsTheMean) {
+  for (double m = 0; m <= 1; m += 0.125) {
+    EXPECT_EQ(mean_escape_share(0.0, m), 0);
+    EXPECT_EQ(mean_escape_share(1.0, m), (1 + m) / 2);
+    EXPECT_DOUBLE_EQ(mean_escape_share(m, m), m);
+    for (double ao = 0.125; ao <= 1; ao += 0.125) {
+      const double g = mean_escape_share(ao, m);
+      EXPECT_GE(g, std::min(ao, m));
+      EXPECT_LE(g, std::max(ao, m));
+      EXPECT_GT(g, mean_escape_share(ao - 0.125, m));
+      EXPECT_LT(g, mean_escape_share(ao, m + 0.125));
+    }
+  }
+}
+
+TEST(ClosedForms, NormalEscapeShareRisesWithVisibilityUpToOne) {
+  EXPECT_DOUBLE_EQ(normal_escape_share(0.5, 0.5), 0.5);  // g = V halfway up
+  EXPECT_DOUBLE_EQ(normal_escape_share(1.0, 1.0), 0.7);
+  EXPECT_EQ(normal_escape_share(1.0, 0.0), 1);
+  for (double z = 0; z <= 1; z += 0.125) {
+    EXPECT_EQ(normal_escape_share(0.0, z), 0);
+    for (double v = 0.125; v <= 1; v += 0.125) {
+      EXPECT_GE(normal_escape_share(v, z), normal_escape_share(v - 0.125, z));
+      EXPECT_LE(normal_escape_share(v, z), 1);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace hemibake

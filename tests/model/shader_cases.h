@@ -6,7 +6,6 @@
 #include <cstring>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "model/shader_text.h"
@@ -20,12 +19,16 @@ struct ShaderCase {
 
 inline std::vector<ShaderCase> shader_cases() {
   return {{"soft_", BoundedModel{0.0697, 1, 0.5065, 0.8318}},
-          {"deep_", BoundedModel{0.421, 1, 0.458, 0.999}},  // on the bound of d: 1 − d must not cancel
+          {"deep_", BoundedModel{0.421, 1, 0.458, 0.999}},       // on the bound of d: 1 − d must not cancel
+          {"darkest_", BoundedModel{0.421, 1, 1e-6, 0.999999}},  // below half's smallest number
           {"notes_", GuardedModel{}},
           {"plain_", VisibilityModel{0, 1}},
+          {"closed_", VisibilityModel{0, 0}},
           {"fitted_", VisibilityModel{0.03, 0.83}},
+          {"normal_", VisibilityNormalModel{}},
           {"escape_", VisibilityAoModel{}},
           {"escape_fitted_", VisibilityAoModel{0.05, 0.9}},
+          {"mean_", MeanEscapeModel{0.375}},
           {"map_", BounceMapModel{0.9}},
           {"cubic_", JimenezModel{}}};
 }
@@ -35,20 +38,28 @@ constexpr int kInputSteps = 33, kAlbedoSteps = 17;
 constexpr size_t kGridSize = size_t{kInputSteps} * kInputSteps * kAlbedoSteps;
 constexpr const char* kAlmostOne = "0.999999";
 
+// Tells the models of two inputs from those of one.
+template <class Model>
+concept OfTwoInputs = requires(const Model& model) {
+  model.total(1.0, 1.0, 1.0);
+};
+
+inline bool has_two_inputs(const AnyModel& model) {
+  return std::visit([]<class Model>(const Model&) { return OfTwoInputs<Model>; }, model);
+}
+
 // Writes the call of a case's function of `x`, `y` and `rgb`. pair: the text of (x, y) as a pair.
 inline std::string call_of(const ShaderCase& shader, const std::string& pair) {
   if (std::holds_alternative<BounceMapModel>(shader.model))
     return shader.name + "multi_bounce(" + pair + ", rgb)";
-  const bool two = std::holds_alternative<VisibilityAoModel>(shader.model);
-  return shader.name + "multi_bounce_irradiance(x, " + (two ? "y, " : "") + "rgb)";
+  return shader.name + "multi_bounce_irradiance(x, " + (has_two_inputs(shader.model) ? "y, " : "") + "rgb)";
 }
 
 // Returns the library's total. x: visibility or AO. y: the second input, where there is one.
 inline double total_of(const AnyModel& model, double x, double y, double albedo) {
   return std::visit(
-      [&](const auto& m) {
-        using Model = std::decay_t<decltype(m)>;
-        if constexpr (std::is_same_v<Model, VisibilityAoModel> || std::is_same_v<Model, BounceMapModel>)
+      [&]<class Model>(const Model& m) {
+        if constexpr (OfTwoInputs<Model>)
           return m.total(x, y, albedo);
         else
           return m.total(x, albedo);

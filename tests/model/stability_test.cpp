@@ -216,6 +216,80 @@ void expect_bounce_map_stable(const char* name, double unit) {
   }
 }
 
+// Holds the largest violations of what an escape model of V and a second input promises.
+struct EscapeWorst {
+  double outside = 0;  // [V, 1]
+  double fall_in_visibility = 0, fall_in_albedo = 0;
+  double off_ends = 0;  // from V at albedo 0 and from 1 at albedo 1
+  int not_finite = 0;
+};
+
+// Evaluates a model over 101 × 101 inputs in the number type T, ends included.
+template <class T, class Model>
+EscapeWorst escape_square(const Model& model) {
+  constexpr int kSteps = 100;
+  const auto total = [&](int v, int second, double albedo) {
+    const T x = static_cast<T>(static_cast<float>(v) / kSteps);
+    const T y = static_cast<T>(static_cast<float>(second) / kSteps);
+    return static_cast<double>(model.total(x, y, static_cast<T>(albedo)));
+  };
+  EscapeWorst worst;
+  const auto grow = [](double& value, double by) { value = std::max(value, by); };
+  for (int v = 0; v <= kSteps; ++v)
+    for (int second = 0; second <= kSteps; ++second) {
+      const double visibility = static_cast<double>(static_cast<T>(static_cast<float>(v) / kSteps));
+      double before = 0;
+      for (const double albedo : {0.0, 0.2, 0.5, 0.8, 0.9, 0.95, 0.999999, 1.0}) {
+        const double e = total(v, second, albedo);
+        worst.not_finite += !std::isfinite(e);
+        grow(worst.outside, std::max(visibility - e, e - 1));
+        grow(worst.fall_in_albedo, before - e);
+        before = e;
+        if (v < kSteps) grow(worst.fall_in_visibility, e - total(v + 1, second, albedo));
+        if (albedo == 0) grow(worst.off_ends, std::abs(e - visibility));
+        if (albedo == 1) grow(worst.off_ends, std::abs(e - 1));
+      }
+    }
+  return worst;
+}
+
+template <class T, class Model>
+void expect_escape_stable(const char* name, const char* type, const Model& model, double unit) {
+  const EscapeWorst w = escape_square<T>(model);
+  fmt::print("| {}, {} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {} |\n", name, type, w.outside, w.fall_in_albedo,
+             w.fall_in_visibility, w.off_ends, w.not_finite == 0 ? "yes" : "**no**");
+  EXPECT_EQ(w.not_finite, 0) << name << type;
+  EXPECT_LE(w.outside, unit) << name << type;
+  EXPECT_LE(w.fall_in_albedo, 2 * unit) << name << type;
+  EXPECT_LE(w.fall_in_visibility, 2 * unit) << name << type;
+  EXPECT_LE(w.off_ends, unit) << name << type;
+}
+
+template <class Model>
+void expect_escape_stable_in_every_type(const char* name, const Model& model) {
+  expect_escape_stable<double>(name, "double", model, 0x1p-52);
+  expect_escape_stable<float>(name, "float", model, 0x1p-23);
+#ifdef __FLT16_MANT_DIG__
+  __extension__ using Half = _Float16;
+  expect_escape_stable<Half>(name, "half", model, 0x1p-10);
+#endif
+  expect_all_passed(check_model(model, 1e-6));
+}
+
+TEST(Stability, EscapesOfTwoInputsHoldInEveryNumberType) {
+  fmt::print(
+      "| form | outside [V, 1] | falls with albedo | with V | off at 0, 1 | finite |\n"
+      "| --- | --- | --- | --- | --- | --- |\n");
+  expect_escape_stable_in_every_type("g = ao", VisibilityAoModel{});
+  expect_escape_stable_in_every_type("g of V and n.z", VisibilityNormalModel{});
+  for (const double m : {0.0, 0.382, 1.0})
+    expect_escape_stable_in_every_type("g of ao and m", MeanEscapeModel{m});
+  // Every map of fits/ whose m is known.
+  for (const FitFile& file : stored_fits())
+    for (const MapEscape& map : file.escapes)
+      if (map.mean_escape) expect_all_passed(check_model(MeanEscapeModel{*map.mean_escape}, 1e-6));
+}
+
 TEST(Stability, BounceMapHoldsOnTheWholeSquareOfBytes) {
   fmt::print(
       "| form | outside [V, 1] | falls with albedo | with bounce | with V, albedo <= r | off at 0, r, 1 | "

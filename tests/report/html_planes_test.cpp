@@ -109,6 +109,30 @@ TEST(HtmlPlanes, ComeBackWithinHalfAStep) {
     for (const int side : {1000, 40, 7, 1}) expect_round_trip(random_bake(width, height, 6), side);
 }
 
+// V is E₀/π: a plane of its own only where there is no E₀.
+TEST(HtmlPlanes, BounceMapAndVisibilityComeBack) {
+  Bake bake = random_bake(13, 9, 2);
+  bake.visibility = bake.visible_fraction;
+  bake.bounce = bake.visible_fraction;
+  for (float& value : bake.bounce.values) value = std::sqrt(value);
+  const auto expect_plane = [](const PackedPlanes& packed, const char* name, const Grid<float>& plane) {
+    const PackedPlane& last = packed.planes.back();
+    EXPECT_EQ(last.name, name);
+    const std::vector<double> values = unpack(last, packed.width, packed.height);
+    EXPECT_LE(largest_difference(values, plane, packed.stride, packed.width), last.step * (0.5 + 1e-9));
+  };
+  const PackedPlanes with_light = pack_planes(bake, 13);
+  ASSERT_EQ(with_light.planes.size(), 4U);
+  expect_plane(with_light, "bounce", bake.bounce);
+  EXPECT_GT(with_light.bounce_error, 0);
+  EXPECT_LE(with_light.bounce_error, 0.5 / 65535 * (1 + 1e-9));
+  bake.irradiance.clear();
+  bake.bounce = {};
+  const PackedPlanes without = pack_planes(bake, 4);
+  ASSERT_EQ(without.planes.size(), 2U);
+  expect_plane(without, "visibility", bake.visibility);
+}
+
 TEST(HtmlPlanes, ExtremesComeBack) {
   Bake bake = random_bake(9, 9, 3);
   bake.visible_fraction = Grid<float>(9, 9, 1.0F);

@@ -12,6 +12,19 @@ const char* normal_y_name(const TextureSettings& settings) {
   return *settings.normal_y == NormalY::kUp ? "up" : "down";
 }
 
+constexpr double kTruthUncertain = 5e-4;
+
+nlohmann::ordered_json json_from_stored(const StoredLoss& stored) {
+  nlohmann::ordered_json rms = nlohmann::ordered_json::array(), percentile = rms, largest = rms;
+  for (const MapError& error : stored.by_albedo) {
+    rms.push_back(error.rms);
+    percentile.push_back(error.percentile);
+    largest.push_back(error.largest);
+  }
+  return {{"bits", stored.bits},           {"box", stored.box}, {"mean_rms", stored.mean_rms()}, {"rms", rms},
+          {"percentile_99_9", percentile}, {"largest", largest}};
+}
+
 std::string describe_values(const WrittenTexture& texture) {
   if (texture.channels.size() == 1) {
     const ChannelRange& range = texture.channels[0];
@@ -38,7 +51,32 @@ std::string describe_textures(const std::vector<WrittenTexture>& textures, const
   for (const WrittenTexture& texture : textures)
     text += fmt::format("  {:{}}  {:10}  {}\n", texture.path.filename().string(), widest,
                         texture_name(texture.kind), describe_values(texture));
+  for (const WrittenTexture& texture : textures) text += describe_bounce_map(texture.bounce_map);
   return text;
+}
+
+std::string describe_bounce_map(const std::optional<BounceMapLoss>& loss) {
+  if (!loss) return "";
+  const StoredLoss& bytes = *loss->find(8, 1);
+  std::string text = fmt::format("bounce map: off by {:.4f} rms at 8 bits ({:.3f} at most), {:.4f} at 16",
+                                 bytes.mean_rms(), bytes.largest(), loss->find(16, 1)->mean_rms());
+  if (const StoredLoss* filtered = loss->find(8, 4))
+    text += fmt::format(", {:.4f} in 4 x 4 means", filtered->mean_rms());
+  text += fmt::format("; albedos {:g} to {:g}\n", kBounceMapAlbedos.front(), kBounceMapAlbedos.back());
+  if (loss->truth_rms > kTruthUncertain)
+    text += fmt::format("            judged by light that the stored bounces tell to {:.4f} rms\n",
+                        loss->truth_rms);
+  return text;
+}
+
+nlohmann::ordered_json json_from_bounce_map(const std::optional<BounceMapLoss>& loss) {
+  if (!loss) return nullptr;
+  nlohmann::ordered_json json = {{"bounce_albedo", loss->bounce_albedo},
+                                 {"truth_rms", loss->truth_rms},
+                                 {"albedos", kBounceMapAlbedos},
+                                 {"stored", nlohmann::ordered_json::array()}};
+  for (const StoredLoss& stored : loss->stored) json["stored"].push_back(json_from_stored(stored));
+  return json;
 }
 
 std::string line_of_textures(const std::vector<WrittenTexture>& textures, const std::filesystem::path& input,
@@ -72,6 +110,7 @@ nlohmann::ordered_json json_from_textures(const std::vector<WrittenTexture>& tex
                     {"mean", mean},
                     {"high", high},
                     {"normal_y", vectors ? nlohmann::ordered_json(normal_y_name(settings)) : nullptr}});
+    if (texture.bounce_map) list.back()["bounce_map"] = json_from_bounce_map(texture.bounce_map);
   }
   return list;
 }

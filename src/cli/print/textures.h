@@ -17,6 +17,13 @@ std::string describe_textures(const std::vector<WrittenTexture>& textures, const
 std::string line_of_textures(const std::vector<WrittenTexture>& textures, const std::filesystem::path& input,
                              const std::filesystem::path& folder);
 
+// Returns a line on what a bounce map leaves, with its line breaks, and a second where its truth is
+// uncertain; empty for none.
+std::string describe_bounce_map(const std::optional<BounceMapLoss>& loss);
+
+// Returns null for none.
+nlohmann::ordered_json json_from_bounce_map(const std::optional<BounceMapLoss>& loss);
+
 nlohmann::ordered_json json_from_textures(const std::vector<WrittenTexture>& textures,
                                           const TextureSettings& settings);
 

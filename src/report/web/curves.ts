@@ -3,7 +3,7 @@
 import { aoAxis, axis, band, chart, curve, dashed, grid, line, tooltip, type Option, type Pair } from './chart';
 import { pointsOf, report, type Point } from './data';
 import { bounceName, checkbox, h, number, place, say, table } from './dom';
-import { bounceOf, currentModel } from './model';
+import { bounceOf, currentModelOfAo } from './model';
 import { onThemeChange, ramp, theme } from './theme';
 
 const kNoCurves = 'The folder has no curves: they need a bake with ao and irradiance.';
@@ -63,7 +63,7 @@ interface Look {
 }
 
 function bouncesOption(points: Point[], bounces: number, shown: Set<number>, { withSpread, logarithmic }: Look): Option {
-  const model = currentModel();
+  const model = currentModelOfAo();
   const list = [...shown].sort((a, b) => a - b);
   // A logarithm has no zero.
   const keep = (value: number) => (logarithmic && value < 1e-5 ? null : value);
@@ -99,7 +99,7 @@ function describe(points: Point[], list: number[], ao: number): string {
   if (points.length === 0) return '';
   const point = points.reduce((best, each) => (Math.abs(each.ao - ao) < Math.abs(best.ao - ao) ? each : best));
   const rows = list.slice(0, 8).map((b) =>
-    `<tr><th>${bounceName(b)}/π</th><td>${point.mean[b].toFixed(4)}</td><td>± ${point.spread[b].toFixed(4)}</td><td>model ${bounceOf(currentModel(), b, point.ao).toFixed(4)}</td></tr>`);
+    `<tr><th>${bounceName(b)}/π</th><td>${point.mean[b].toFixed(4)}</td><td>± ${point.spread[b].toFixed(4)}</td><td>model ${bounceOf(currentModelOfAo(), b, point.ao).toFixed(4)}</td></tr>`);
   return `<b>α ${point.ao.toFixed(3)}</b>, ${point.count} texels<table class="tip">${rows.join('')}</table>${list.length > 8 ? '…' : ''}`;
 }
 

@@ -25,12 +25,14 @@ export interface Score {
   max: number;
 }
 
+export type ModelId = 'visibility-ao' | 'visibility' | 'bounce-map' | 'bounded' | 'published' | 'notes';
+
 export interface ModelData {
-  id: 'bounded' | 'published' | 'notes';
+  id: ModelId;
   title: string;
   constants: Record<string, number>;
   shader: Record<Language, string>;
-  score: Score | null;
+  score: Score | null; // over the bins of the curves; none of the bounce map
 }
 
 export interface PlaneList {
@@ -39,19 +41,30 @@ export interface PlaneList {
   stride: number;
   list: { name: string; step: number }[];
   ao_error: number;
+  bounce_error: number;
   irradiance_error_over_pi: number;
   total_error_over_pi: number;
+}
+
+// Holds what a bounce map leaves of the light, E/π.
+export interface BounceMapLoss {
+  bounce_albedo: number;
+  truth_rms: number; // how far the stored bounces tell the light at the map's own albedo
+  albedos: number[];
+  stored: { bits: number; box: number; rms: number[]; percentile: number[]; largest: number[] }[]; // at each of `albedos`
 }
 
 export interface Bake {
   width: number;
   height: number;
   mean_ao: number | null;
+  mean_visibility: number | null;
   mean_irradiance: number[];
   mean_total: number | null;
   mean_residual: number | null;
   worst_residual: number | null;
-  texel_errors: Record<string, number>[];
+  texel_errors: Record<string, number>[]; // at `albedo`: rms by the id of a model or of an other_models
+  bounce_map: BounceMapLoss | null;
   planes: PlaneList;
   settings: Record<string, string | number | boolean> | null;
 }
@@ -83,7 +96,7 @@ export interface Report {
   curves: Curves | null;
   fits: Record<string, Fit> | null;
   models: ModelData[];
-  other_models: { title: string; score: Score }[];
+  other_models: { id: string; title: string; score: Score | null }[];
   check: { passed: boolean; checks: Check[] } | null;
   run: Record<string, unknown> | null;
   trade: unknown;

@@ -3,7 +3,7 @@
 import { aoAxis, axis, band, chart, curve, dashed, grid, legend, line, type Option, type Pair } from './chart';
 import { pointsOf, report, type Point } from './data';
 import { h, number, place, say } from './dom';
-import { currentModel, models, mayaux2018Direct, mayaux2018FirstBounce, type Model } from './model';
+import { currentModelOfAo, mayaux2018Direct, mayaux2018FirstBounce, modelsOfAo, type ModelOfAo } from './model';
 import { ramp, theme } from './theme';
 
 const kNoCurves = 'The folder has no curves to hold the models against; the models are shown alone.';
@@ -17,9 +17,9 @@ export function showModels(): void {
 }
 
 // Gives the chosen model the colour of ink.
-function colorOf(model: Model): string {
+function colorOf(model: ModelOfAo): string {
   const t = theme();
-  return model === currentModel() ? t.ink : model.data.id === 'notes' ? t.faint : t.third;
+  return model === currentModelOfAo() ? t.ink : model.data.id === 'notes' ? t.faint : t.third;
 }
 
 function showDirect(points: Point[]): void {
@@ -34,9 +34,9 @@ function showDirect(points: Point[]): void {
     if (points.length > 1)
       series.push(band('spread', pairs((point) => point.mean[0] - point.spread[0]), pairs((point) => point.mean[0] + point.spread[0]), t.accent));
     if (points.length > 0) series.push(line('data E₀/π', pairs((point) => point.mean[0]), t.accent, { z: 4, lineStyle: { width: 2.5, color: t.accent } }));
-    for (const model of models)
+    for (const model of modelsOfAo)
       series.push(line(`F₀, ${model.data.title}`, curve((ao) => model.direct(ao)), colorOf(model),
-        { z: 5, lineStyle: { width: model === currentModel() ? 1.75 : 1.25, color: colorOf(model), type: model.data.id === 'notes' ? [2, 3] : 'solid' } }));
+        { z: 5, lineStyle: { width: model === currentModelOfAo() ? 1.75 : 1.25, color: colorOf(model), type: model.data.id === 'notes' ? [2, 3] : 'solid' } }));
     return {
       legend: legend({ data: series.map((each) => each.name).filter((name) => name !== 'spread') }),
       xAxis: aoAxis(), yAxis: axis('E₀ / π', { min: 0, max: 1, nameGap: 40 }), series,
@@ -52,7 +52,7 @@ function showAlbedos(points: Point[]): void {
       if (points.length > 0)
         series.push(line(`data, ρ = ${albedo.toFixed(1)}`, points.map((point) => [point.ao, point.allBounces[step]]), color,
           { lineStyle: { width: 1, color }, showSymbol: true, symbolSize: points.length < 4 ? 7 : 3, z: 2 }));
-      series.push(line(`model, ρ = ${albedo.toFixed(1)}`, curve((ao) => currentModel().total(ao, albedo)), color,
+      series.push(line(`model, ρ = ${albedo.toFixed(1)}`, curve((ao) => currentModelOfAo().totalOf(ao, albedo)), color,
         { lineStyle: { width: 2.5, color }, z: 3 }));
     }
     return {
@@ -86,7 +86,7 @@ function poleOf(constants: Record<string, number>): number | null {
 }
 
 function showRatio(points: Point[]): void {
-  const notes = models.find((model) => model.data.id === 'notes')!.data.constants;
+  const notes = modelsOfAo.find((model) => model.data.id === 'notes')!.data.constants;
   const pole = poleOf(notes);
   const raw = (ao: number) => 1 - mayaux2018FirstBounce(notes, ao) / (1 - mayaux2018Direct(notes, ao));
   place('ratio').append(chart('Ratio tau of each bounce to the one before over ambient occlusion, with the pole of the published formula', 400, () => {
@@ -97,7 +97,7 @@ function showRatio(points: Point[]): void {
       series.push(line('data E₂/E₁', measured.map((point) => [point.ao, point.mean[2] / point.mean[1]]), t.accent, { lineStyle: { width: 2.5, color: t.accent } }));
       series.push(line('data 1 − E₁/(π − E₀)', measured.map((point) => [point.ao, 1 - point.mean[1] / (1 - point.mean[0])]), t.second));
     }
-    for (const model of models)
+    for (const model of modelsOfAo)
       if (model.data.id !== 'notes')
         series.push(line(`τ, ${model.data.title}`, curve((ao) => 1 - model.escape(ao)), colorOf(model), { lineStyle: { width: 1.75, color: colorOf(model) } }));
     const fine = Array.from({ length: 2001 }, (_, i) => i / 2000);

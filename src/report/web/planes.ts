@@ -1,6 +1,7 @@
 // Unpacks the planes of the bake (src/report/html_planes.cpp packs them).
 
 import type { PlaneList } from './data';
+import type { Texel } from './model';
 
 export interface Planes {
   width: number;
@@ -8,8 +9,12 @@ export interface Planes {
   stride: number; // texel (x, y) here is (x·stride, y·stride) of the bake
   aoStep: number; // α = code · step
   irradianceStep: number; // E_b/π = code · step
+  bounceStep: number; // E/π of the bounce map = code · step
+  visibilityStep: number; // V = code · step, at most 1
   ao: Uint16Array | null;
   irradiance: Uint16Array[];
+  bounce: Uint16Array | null;
+  visibility: Uint16Array | null; // the plane of E₀ where there is one
 }
 
 // Unpacks one plane after another, so that the page stays alive. progress: takes the share done.
@@ -20,8 +25,12 @@ export async function readPlanes(list: PlaneList, progress: (share: number) => v
     stride: list.stride,
     aoStep: 1,
     irradianceStep: 1,
+    bounceStep: 1,
+    visibilityStep: 1,
     ao: null,
     irradiance: [],
+    bounce: null,
+    visibility: null,
   };
   for (const [i, { name, step }] of list.list.entries()) {
     const element = document.querySelector(`script.plane[data-name="${name}"]`)!;
@@ -30,11 +39,21 @@ export async function readPlanes(list: PlaneList, progress: (share: number) => v
     if (name === 'ao') {
       planes.ao = codes;
       planes.aoStep = step;
+    } else if (name === 'bounce') {
+      planes.bounce = codes;
+      planes.bounceStep = step;
+    } else if (name === 'visibility') {
+      planes.visibility = codes;
+      planes.visibilityStep = step;
     } else {
       planes.irradiance.push(codes);
       planes.irradianceStep = step / Math.PI;
     }
     progress((i + 1) / list.list.length);
+  }
+  if (planes.irradiance.length > 0) {
+    planes.visibility = planes.irradiance[0];
+    planes.visibilityStep = planes.irradianceStep;
   }
   return planes;
 }
@@ -70,8 +89,14 @@ function unpredict(bytes: Uint8Array, width: number, height: number): Uint16Arra
   return codes;
 }
 
-export function aoOf(planes: Planes, texel: number): number {
-  return planes.ao![texel] * planes.aoStep;
+// Returns what models take of a texel.
+export function texelOf(planes: Planes, texel: number): Texel {
+  const value = (codes: Uint16Array | null, step: number) => (codes ? Math.min(codes[texel] * step, 1) : 0);
+  return {
+    ao: value(planes.ao, planes.aoStep),
+    visibility: value(planes.visibility, planes.visibilityStep),
+    bounce: value(planes.bounce, planes.bounceStep),
+  };
 }
 
 // Returns ρᵇ E_b/π of one bounce.

@@ -3,8 +3,9 @@
 import { cssColor } from './color';
 import type { Rgb } from './data';
 import { bounceName, h } from './dom';
+import { bounceMap } from './model';
 import type { Picture } from './picture';
-import { aoOf, truthOf, type Planes } from './planes';
+import { texelOf, truthOf, type Planes } from './planes';
 
 export interface Probe {
   element: HTMLElement;
@@ -13,7 +14,7 @@ export interface Probe {
   texel(): [number, number];
 }
 
-const kRows = ['off', 'model', 'truth', 'model − truth'] as const;
+const kRows = ['off', 'model', ...(bounceMap ? ['bounce map'] : []), 'truth', 'model − truth', ...(bounceMap ? ['map − truth'] : [])];
 
 export function makeProbe(planes: Planes, picture: () => Picture): Probe {
   let at: [number, number] = [Math.floor(planes.width / 2), Math.floor(planes.height / 2)];
@@ -30,23 +31,31 @@ export function makeProbe(planes: Planes, picture: () => Picture): Probe {
       h('tbody', {}, kRows.map((name, i) => h('tr', { 'data-row': name }, h('th', { scope: 'row' }, swatches[i], name), cells[i])))),
     bars);
 
+  const isError = (row: number) => kRows[row].endsWith('− truth');
   let barsOf = -1; // the texel of the bars
   const update = () => {
-    const { albedo, model, lastBounce } = picture();
+    const { albedo, model, plain, lastBounce } = picture();
     const texel = at[1] * planes.width + at[0];
-    const ao = aoOf(planes, texel);
-    const off: Rgb = [ao, ao, ao];
-    const modelled = albedo.map((rho) => model.total(Math.min(ao, 1), rho)) as Rgb;
-    const traced = planes.irradiance.length > 0 ? (albedo.map((rho) => truthOf(planes, texel, rho, lastBounce)) as Rgb) : null;
-    const rows = [off, modelled, traced, traced && (modelled.map((value, c) => value - traced[c]) as Rgb)];
+    const inputs = texelOf(planes, texel);
+    const light = (shade: (rho: number) => number) => albedo.map(shade) as Rgb;
+    const off = light(() => inputs[plain]);
+    const modelled = light((rho) => model.total(inputs, rho));
+    const mapped = bounceMap && light((rho) => bounceMap!.total(inputs, rho));
+    const traced = planes.irradiance.length > 0 ? light((rho) => truthOf(planes, texel, rho, lastBounce)) : null;
+    const error = (of: Rgb) => traced && (of.map((value, c) => value - traced[c]) as Rgb);
+    const rows = [off, modelled, ...(mapped ? [mapped] : []), traced, error(modelled), ...(mapped ? [error(mapped)] : [])];
     where.textContent = `texel ${at[0] * planes.stride}, ${at[1] * planes.stride}`;
     element.dataset.x = String(at[0] * planes.stride);
     element.dataset.y = String(at[1] * planes.stride);
     const irradiance = planes.irradiance.map((plane) => plane[texel] * planes.irradianceStep);
-    facts.textContent = `α ${ao.toFixed(4)}` + irradiance.slice(0, 2).map((value, b) => `   ${bounceName(b)}/π ${value.toFixed(4)}`).join('');
+    facts.textContent = [`α ${inputs.ao.toFixed(4)}`]
+      .concat(planes.visibility ? `V ${inputs.visibility.toFixed(4)}` : [])
+      .concat(planes.irradiance.slice(1, 2).map(() => `E₁/π ${irradiance[1].toFixed(4)}`))
+      .concat(bounceMap ? `E(${bounceMap.data.constants.bounce_albedo})/π ${inputs.bounce.toFixed(4)}` : [])
+      .join('   ');
     rows.forEach((row, i) => {
-      cells[i].forEach((cell, c) => (cell.textContent = row ? (i === 3 && row[c] >= 0 ? '+' : '') + row[c].toFixed(4).replace('-', '−') : '–'));
-      swatches[i].style.background = row && i < 3 ? cssColor(row.map((value, c) => value * albedo[c])) : 'transparent';
+      cells[i].forEach((cell, c) => (cell.textContent = row ? (isError(i) && row[c] >= 0 ? '+' : '') + row[c].toFixed(4).replace('-', '−') : '–'));
+      swatches[i].style.background = row && !isError(i) ? cssColor(row.map((value, c) => value * albedo[c])) : 'transparent';
     });
     if (barsOf !== texel) drawBars(bars, irradiance);
     barsOf = texel;

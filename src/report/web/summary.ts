@@ -1,6 +1,6 @@
 // Shows the numbers that a person quotes.
 
-import { report } from './data';
+import { report, type BounceMapLoss } from './data';
 import { h, number, place, table, withError } from './dom';
 
 function percent(value: number | null | undefined): string {
@@ -15,15 +15,16 @@ export function showSummary(): void {
   const { bake, curves, check, fits } = report;
   const cards: HTMLElement[] = [];
   if (bake) {
-    if (bake.mean_ao !== null) cards.push(card('mean α', number(bake.mean_ao), 'uniform visible fraction'));
-    if (bake.mean_irradiance.length > 0) cards.push(card('mean E₀/π', number(bake.mean_irradiance[0]), 'light straight from the sky'));
+    if (bake.mean_ao !== null) cards.push(card('mean α', number(bake.mean_ao), 'uniform AO: visible share of the directions'));
+    if (bake.mean_visibility !== null)
+      cards.push(card('mean V', number(bake.mean_visibility), 'E₀/π, cosine-weighted: what GTAO, Substance and Unreal call AO'));
     if (bake.mean_irradiance.length > 1) cards.push(card('mean E₁/π', number(bake.mean_irradiance[1]), 'after one bounce, albedo 1'));
     if (bake.mean_total !== null)
       cards.push(card('energy', percent(bake.mean_total), `of π at albedo 1; still under way ${percent(bake.mean_residual)}, worst texel ${percent(bake.worst_residual)}`));
   }
-  const best = report.models[0];
-  if (best.score && curves)
-    cards.push(card('model', `${number(best.score.rms, 3)} rms`, `of E/π over α bins and albedos 0 … 1; ${best.title}`));
+  const best = report.models.find((model) => ['bounded', 'notes'].includes(model.id))!;
+  if (best.score)
+    cards.push(card('model of α', `${number(best.score.rms, 3)} rms`, `of E/π over α bins and albedos 0 … 1; ${best.title}`));
   if (check) {
     const judged = check.checks.filter((each) => each.tolerance !== null);
     const failed = judged.filter((each) => !each.passed).length;
@@ -40,7 +41,8 @@ export function showSummary(): void {
   if (missing.length > 0)
     host.append(h('ul', { class: 'missing', 'aria-label': 'what is missing' }, missing.map((line) => h('li', {}, line))));
   if (fits) host.append(constants());
-  if (curves) host.append(errors());
+  if (curves || bake?.texel_errors.length) host.append(errors());
+  if (bake?.bounce_map) host.append(bounceMapLoss(bake.bounce_map));
 }
 
 // Describes the bake in one sentence.
@@ -60,11 +62,13 @@ function missingFiles(): string[] {
   const lines: string[] = [];
   if (!bake) lines.push('No bake.exr: no picture and no settings.');
   else if (bake.mean_irradiance.length === 0) lines.push('The bake has no irradiance: no curves, no truth to compare with.');
-  else if (bake.mean_irradiance.length === 1) lines.push('The bake has no bounces (--bounces 0): direct light only.');
+  else if (!report.models.some(({ id }) => id === 'bounce-map'))
+    lines.push('The bake has no bounce map (plane bounce, ‘hemibake bake --bounce-albedo’): that model is left out.');
+  if (bake?.mean_irradiance.length === 1) lines.push('The bake has no bounces (--bounces 0): direct light only.');
   if (!curves) lines.push('No curves: made by ‘hemibake curves’ from a bake with ao and irradiance.');
   else if (curves.bins.filter((bin) => bin.count > 0).length < 2)
     lines.push('The curves have one bin with texels: a point each, and nothing to fit.');
-  if (!fits) lines.push('No fit.json: the model shown is that of 2018 with its published constants, not fitted to this map.');
+  if (!fits) lines.push('No fit.json: the model of α shown is that of 2018 with its published constants, not fitted to this map.');
   if (!check) lines.push('No check.json: nothing says here that light is neither made nor lost.');
   if (!run) lines.push('No timings: ‘hemibake run --json’ prints them; saved as run.json in the folder they appear here.');
   return lines;
@@ -90,10 +94,19 @@ function errors(): HTMLElement {
   const texelCells = (id: string) => perTexel.map((entry) => number(entry[id], 3));
   const rows = report.models.map((model) => [model.title, number(model.score?.rms, 3), number(model.score?.max, 3), ...texelCells(model.id)]);
   for (const other of report.other_models)
-    rows.push([other.title, number(other.score.rms, 3), number(other.score.max, 3),
-               ...(other.title === 'plain AO' ? texelCells('off') : perTexel.map(() => '–'))]);
-  return table(['model', 'bins, rms', 'bins, largest', ...perTexel.map((entry) => `texels, rms at ρ = ${entry.albedo}`)], rows,
-               'How far each model is from this map: E/π over bins × albedos 0, 0.1, … 1, and over all texels');
+    rows.push([other.title, number(other.score?.rms, 3), number(other.score?.max, 3), ...texelCells(other.id)]);
+  return table(['model', 'bins, rms', 'bins, largest', ...perTexel.map((entry) => `texels, ρ = ${entry.albedo}`)], rows,
+               'How far each model is from this map, E/π: over bins × albedos 0, 0.1, … 1 (V is the mean of the bin), and rms over all texels at one albedo');
+}
+
+function bounceMapLoss({ bounce_albedo, truth_rms, albedos, stored }: BounceMapLoss): HTMLElement {
+  const rows = stored.map(({ bits, box, rms, percentile, largest }) => [
+    `${bits === 32 ? 'float' : `${bits} bits`}${box > 1 ? `, ${box} × ${box} box` : ''}`,
+    ...albedos.map((_, i) => [rms, percentile, largest].map((list) => number(list[i], 2)).join(' · ')),
+  ]);
+  return table(['stored as', ...albedos.map((albedo) => `ρ = ${albedo}`)], rows,
+               `What the bounce map of V and E at ρ = ${bounce_albedo} leaves of E/π: rms · 99.9th percentile · largest over the texels; ` +
+               `the stored bounces tell the light to ${number(truth_rms, 2)} rms`);
 }
 
 export function showTitle(): void {

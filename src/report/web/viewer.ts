@@ -4,7 +4,7 @@ import { albedoControls } from './albedo';
 import { report } from './data';
 import { checkbox, choice, h, number, place, say, slider } from './dom';
 import { chooseModel, currentModel, models, onModelChange } from './model';
-import type { Picture, Renderer, View } from './picture';
+import { kCompared, type Picture, type PlainAo, type Renderer, type View } from './picture';
 import { readPlanes, type Planes } from './planes';
 import { makeProbe, type Probe } from './probe';
 import { makeCanvasRenderer } from './viewer_canvas';
@@ -35,7 +35,7 @@ class Viewer {
   private readonly stage = h('div', { class: 'stage' }, this.canvas);
   private renderer: Renderer;
   private picture: Picture;
-  private shares: [number, number] = [1 / 3, 2 / 3]; // of the dividers, of the canvas' width
+  private shares = kCompared.slice(1).map((_, i) => (i + 1) / kCompared.length); // of the dividers, of the canvas' width
   private handles: HTMLElement[] = [];
   private labels: HTMLElement[] = [];
   private probe: Probe;
@@ -48,6 +48,7 @@ class Viewer {
     this.picture = {
       model: currentModel(),
       view: bounces > 0 ? 'compare' : 'off',
+      plain: 'ao',
       albedo: [...report.albedo],
       exposure: 0,
       asColor: true,
@@ -56,7 +57,7 @@ class Viewer {
       originX: 0,
       originY: 0,
       texelsPerPixel: 1,
-      dividers: [0, 0],
+      dividers: [],
     };
     this.probe = makeProbe(planes, () => this.picture);
     this.addDividers();
@@ -240,13 +241,12 @@ class Viewer {
   }
 
   private addDividers(): void {
-    this.labels = ['off', 'model', 'truth'].map((name) => h('span', { class: 'tag', 'aria-hidden': 'true' }, name));
-    this.handles = ['off and model', 'model and truth'].map((name, i) => {
-      const handle = h('div', { class: 'divider', role: 'slider', tabindex: 0, 'aria-label': `border between ${name}`,
+    this.labels = kCompared.map((name) => h('span', { class: 'tag', 'aria-hidden': 'true' }, name));
+    this.handles = kCompared.slice(1).map((right, i) => {
+      const handle = h('div', { class: 'divider', role: 'slider', tabindex: 0, 'aria-label': `border between ${kCompared[i]} and ${right}`,
                                 'aria-valuemin': 0, 'aria-valuemax': 100 });
       const move = (share: number) => {
-        const [low, high] = i === 0 ? [0, this.shares[1]] : [this.shares[0], 1];
-        this.shares[i] = Math.min(Math.max(share, low), high);
+        this.shares[i] = Math.min(Math.max(share, this.shares[i - 1] ?? 0), this.shares[i + 1] ?? 1);
         this.redraw();
       };
       handle.addEventListener('pointerdown', (event) => {
@@ -272,7 +272,7 @@ class Viewer {
 
   private placeDividers(): void {
     const compare = this.picture.view === 'compare';
-    this.picture.dividers = [this.shares[0] * this.canvas.width, this.shares[1] * this.canvas.width];
+    this.picture.dividers = this.shares.map((share) => share * this.canvas.width);
     this.handles.forEach((handle, i) => {
       handle.hidden = !compare;
       handle.style.left = `${100 * this.shares[i]}%`;
@@ -281,11 +281,12 @@ class Viewer {
     const edges = [0, ...this.shares, 1];
     this.labels.forEach((label, i) => {
       label.hidden = !compare || edges[i + 1] - edges[i] < 0.1;
+      if (kCompared[i] === 'off') label.textContent = this.picture.plain === 'ao' ? 'off: α' : 'off: V';
       label.style.left = `${50 * (edges[i] + edges[i + 1])}%`;
     });
     this.placeCross();
     this.canvas.setAttribute('aria-label',
-      `picture of the bake, showing ${compare ? 'plain AO, the model and the truth side by side' : this.picture.view}`);
+      `picture of the bake, showing ${compare ? `${kCompared.join(', ')} side by side` : this.picture.view}`);
   }
 
   private controls(): HTMLElement {
@@ -297,6 +298,10 @@ class Viewer {
     return h('div', { class: 'controls' },
       choice('Show', bounces > 0 ? views : views.filter(([view]) => view === 'off' || view === 'model'),
              this.picture.view, (view) => this.set({ view: view as View })),
+      this.planes.visibility
+        ? choice('AO of “off”', [['plain ao', 'α, uniform'], ['plain visibility', 'V, cosine-weighted']], 'plain ao',
+                 (plain) => this.set({ plain: plain.replace('plain ', '') as PlainAo }))
+        : null,
       choice('Model', models.map((model) => [model.data.id, model.data.title]), this.picture.model.data.id, chooseModel),
       albedoControls(this.picture.albedo, (albedo) => this.set({ albedo })),
       slider({ label: 'Exposure', name: 'exposure', range: [-3, 5, 0.05], value: 0,
@@ -356,10 +361,13 @@ class Viewer {
   private notes(): HTMLElement {
     const planes = report.bake!.planes;
     const every = planes.stride === 1 ? 'Every texel of the bake is here' : `Every ${planes.stride}th texel of the bake (${report.bake!.width} × ${report.bake!.height}) in both directions is here`;
+    const map = planes.list.some(({ name }) => name === 'bounce') ? `, the bounce map by ${number(planes.bounce_error, 2)}` : '';
     return h('p', { class: 'note' },
+      'α is the uniform visible fraction: the share of the directions that reach the sky. V = E₀/π weights them by the cosine: the ',
+      'sky-view factor, and what GTAO, Substance and Unreal call AO. Each model takes the one that its name says. ',
       `${every}. Sky: radiance 1 from everywhere. Truth: Σ ρᵇ E_b over the stored bounces; the slider ends it early. `,
       'Light and colour are linear and shown as sRGB; what is above 1 at the exposure chosen is shown as 1. Values travel as 16-bit ',
-      `numbers: α is off by at most ${number(planes.ao_error, 2)}, one E_b/π by ${number(planes.irradiance_error_over_pi, 2)}, their sum by `,
+      `numbers: α is off by at most ${number(planes.ao_error, 2)}${map}, one E_b/π by ${number(planes.irradiance_error_over_pi, 2)}, their sum by `,
       `${number(planes.total_error_over_pi, 2)} (measured).`);
   }
 }

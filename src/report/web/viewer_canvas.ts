@@ -1,8 +1,8 @@
 // Draws the picture without WebGL: every texel of the bake by the processor, then scaled onto the canvas.
 
 import { encode, kLuminance, kTooBright, kTooDark } from './color';
-import { panelsOf, type Panel, type Picture, type Renderer } from './picture';
-import { aoOf, bounceLight, truthOf, type Planes } from './planes';
+import { modelOf, panelsOf, type Panel, type Picture, type Renderer } from './picture';
+import { bounceLight, texelOf, truthOf, type Planes } from './planes';
 
 // sRGB bytes of 0..1 in steps of 1/4095.
 const kEncoded = Uint8ClampedArray.from({ length: 4096 }, (_, i) => Math.round(255 * encode(i / 4095)));
@@ -14,7 +14,7 @@ export function makeCanvasRenderer(canvas: HTMLCanvasElement, planes: Planes): R
   // Returns what the panel shows, computed again only where something in it changed.
   const imageOf = (panel: Panel, picture: Picture): HTMLCanvasElement => {
     const settings = JSON.stringify([
-      picture.model.data.id, picture.albedo, picture.exposure, picture.asColor, picture.lastBounce, picture.range,
+      picture.model.data.id, picture.plain, picture.albedo, picture.exposure, picture.asColor, picture.lastBounce, picture.range,
     ]);
     let entry = panels.get(panel);
     if (!entry) {
@@ -78,9 +78,10 @@ function paint(image: HTMLCanvasElement, planes: Planes, panel: Panel, picture: 
 export function lightOf(planes: Planes, texel: number, panel: Panel, picture: Picture, albedo: number): number {
   switch (panel) {
     case 'off':
-      return aoOf(planes, texel);
+      return texelOf(planes, texel)[picture.plain];
     case 'model':
-      return picture.model.total(Math.min(aoOf(planes, texel), 1), albedo);
+    case 'bounce map':
+      return modelOf(picture, panel).total(texelOf(planes, texel), albedo);
     case 'truth':
       return truthOf(planes, texel, albedo, picture.lastBounce);
     case 'bounce':

@@ -1,6 +1,6 @@
 // Draws the picture by WebGL2.
 
-import { panelsOf, type Panel, type Picture, type Renderer } from './picture';
+import { modelOf, panelsOf, type Panel, type Picture, type Renderer } from './picture';
 import type { Planes } from './planes';
 import { kShowShader, kVertexShader, lightShader } from './viewer_shader';
 
@@ -10,7 +10,7 @@ export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Rende
   const context = canvas.getContext('webgl2', { alpha: true, antialias: false, depth: false, preserveDrawingBuffer: true });
   if (!context) return null;
   const gl = context;
-  const layers = Math.ceil((planes.irradiance.length + 1) / 8);
+  const layers = Math.ceil(listOf(planes).length / 8);
   if (
     layers > gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS) ||
     Math.max(planes.width, planes.height) > gl.getParameter(gl.MAX_TEXTURE_SIZE)
@@ -35,13 +35,18 @@ export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Rende
   // Lights the columns from..to − 1 of the bake.
   const light = (picture: Picture, panel: Panel, from: number, to: number) => {
     if (to <= from) return;
-    const key = `${picture.model.data.id} ${panel}`;
-    if (!lights.has(key)) lights.set(key, makeProgram(gl, lightShader(picture.model.data.shader.glsl, panel)));
+    const { data } = modelOf(picture, panel);
+    const key = `${data.id} ${panel} ${picture.plain}`;
+    if (!lights.has(key)) lights.set(key, makeProgram(gl, lightShader(data, panel, picture.plain)));
     const { program, at } = lights.get(key)!;
     gl.useProgram(program);
     gl.uniform1i(at('planes'), 0);
     gl.uniform1f(at('ao_step'), planes.aoStep);
     gl.uniform1f(at('irradiance_step'), planes.irradianceStep);
+    gl.uniform1f(at('visibility_step'), planes.visibilityStep);
+    gl.uniform1i(at('visibility_plane'), Math.max(listOf(planes).indexOf(planes.visibility), 0));
+    gl.uniform1f(at('bounce_step'), planes.bounceStep);
+    gl.uniform1i(at('bounce_plane'), Math.max(listOf(planes).indexOf(planes.bounce), 0));
     gl.uniform1i(at('last_bounce'), picture.lastBounce);
     gl.uniform3fv(at('albedo'), picture.albedo);
     gl.uniform3fv(at('shown'), picture.asColor ? picture.albedo : [1, 1, 1]);
@@ -65,7 +70,7 @@ export function makeGlRenderer(canvas: HTMLCanvasElement, planes: Planes): Rende
     draw(picture) {
       if (gl.isContextLost()) return;
       const wanted = JSON.stringify([
-        picture.model.data.id, picture.albedo, picture.exposure, picture.asColor, picture.lastBounce, picture.range,
+        picture.model.data.id, picture.plain, picture.albedo, picture.exposure, picture.asColor, picture.lastBounce, picture.range,
         panelsOf(picture, planes.width),
       ]);
       if (wanted !== settings) lightAll(picture);
@@ -133,6 +138,13 @@ function uploadCorners(gl: WebGL2RenderingContext): void {
   gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 0, 0);
 }
 
+// Returns the planes in the order of the texture: α, E₀, E₁, …, then the bounce map, and V where there is no E₀.
+function listOf(planes: Planes): (Uint16Array | null)[] {
+  const all = [planes.ao, ...planes.irradiance];
+  for (const plane of [planes.bounce, planes.visibility]) if (plane && !all.includes(plane)) all.push(plane);
+  return all;
+}
+
 // Uploads the planes as texture 0.
 function uploadPlanes(gl: WebGL2RenderingContext, planes: Planes, layers: number): void {
   const { width, height } = planes;
@@ -142,7 +154,7 @@ function uploadPlanes(gl: WebGL2RenderingContext, planes: Planes, layers: number
   gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA32UI, width, height, layers);
   for (const side of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
     gl.texParameteri(gl.TEXTURE_2D_ARRAY, side, gl.NEAREST);
-  const all = [planes.ao, ...planes.irradiance];
+  const all = listOf(planes);
   const layer = new Uint32Array(4 * width * height);
   for (let l = 0; l < layers; ++l) {
     for (let part = 0; part < 4; ++part) {

@@ -2,7 +2,8 @@
 // text that `hemibake export --to glsl` writes.
 
 import { kLuminance, kTooBright, kTooDark } from './color';
-import type { Panel } from './picture';
+import type { ModelData, ModelId } from './data';
+import type { Panel, PlainAo } from './picture';
 
 export const kVertexShader = `#version 300 es
 in vec2 corner;
@@ -25,20 +26,39 @@ void main() {
 }
 `;
 
-// Statements that set `color` of a texel.
-const kPanels: Record<Panel, string> = {
-  off: 'color = vec4(encode(shown * ao), 1.0);',
-  model: 'color = vec4(encode(shown * multi_bounce_irradiance(ao, albedo)), 1.0);',
-  truth: 'color = vec4(encode(shown * traced_light(texel)), 1.0);',
-  bounce: 'color = vec4(encode(shown * one_bounce(texel)), 1.0);',
-  difference: 'color = signed_color(shown * (multi_bounce_irradiance(ao, albedo) - traced_light(texel)));',
-  'difference off': 'color = signed_color(shown * (vec3(ao) - traced_light(texel)));',
+// Calls of the models' shader texts with what they take.
+const kCalls: Record<ModelId, string> = {
+  'visibility-ao': 'multi_bounce_irradiance(visibility, ao, albedo)',
+  visibility: 'multi_bounce_irradiance(visibility, albedo)',
+  'bounce-map': 'multi_bounce(vec2(visibility, unit_value(texel, bounce_plane, bounce_step)), albedo)',
+  bounded: 'multi_bounce_irradiance(ao, albedo)',
+  published: 'multi_bounce_irradiance(ao, albedo)',
+  notes: 'multi_bounce_irradiance(ao, albedo)',
 };
 
-// Eight planes a layer, two in each channel: α and E₀, E₁ and E₂, … Integers, so that a texel is what the bake says and
-// nothing between two.
+// Returns a statement that sets `color` of a texel.
+function statementOf(panel: Panel, model: string, plain: PlainAo): string {
+  switch (panel) {
+    case 'off':
+      return `color = vec4(encode(shown * ${plain}), 1.0);`;
+    case 'model':
+    case 'bounce map':
+      return `color = vec4(encode(shown * ${model}), 1.0);`;
+    case 'truth':
+      return 'color = vec4(encode(shown * traced_light(texel)), 1.0);';
+    case 'bounce':
+      return 'color = vec4(encode(shown * one_bounce(texel)), 1.0);';
+    case 'difference':
+      return `color = signed_color(shown * (${model} - traced_light(texel)));`;
+    case 'difference off':
+      return `color = signed_color(shown * (vec3(${plain}) - traced_light(texel)));`;
+  }
+}
+
+// Eight planes a layer, two in each channel: α and E₀, E₁ and E₂, …, and behind the bounces the bounce map and V, where
+// they are planes of their own. Integers, so that a texel is what the bake says and nothing between two.
 // A shader for each panel: software renderers work through every branch.
-export function lightShader(model: string, panel: Panel): string {
+export function lightShader(model: ModelData, panel: Panel, plain: PlainAo): string {
   return `#version 300 es
 precision highp float;
 precision highp int;
@@ -46,6 +66,10 @@ precision highp usampler2DArray;
 uniform usampler2DArray planes;
 uniform float ao_step;
 uniform float irradiance_step;  // of E/pi
+uniform float visibility_step;
+uniform int visibility_plane;
+uniform float bounce_step;
+uniform int bounce_plane;
 uniform int last_bounce;
 uniform vec3 albedo;
 uniform vec3 shown;             // albedo for colour, 1 for light
@@ -53,7 +77,7 @@ uniform float gain;
 uniform float range;            // largest difference shown
 out vec4 color;
 
-${model}
+${model.shader.glsl}
 
 // Two bounces, the first of them in the lower half; -1 is AO.
 vec3 add_bounces(vec3 sum, uint codes, int bounce) {
@@ -75,12 +99,17 @@ vec3 traced_light(ivec2 texel) {
   return sum * irradiance_step;
 }
 
-vec3 one_bounce(ivec2 texel) {
-  int plane = last_bounce + 1;
+float value(ivec2 texel, int plane, float plane_step) {
   uint codes = texelFetch(planes, ivec3(texel, plane / 8), 0)[plane / 2 % 4];
+  return float(plane % 2 == 0 ? codes & 0xffffu : codes >> 16) * plane_step;
+}
+
+float unit_value(ivec2 texel, int plane, float plane_step) { return min(value(texel, plane, plane_step), 1.0); }
+
+vec3 one_bounce(ivec2 texel) {
   vec3 power = vec3(1.0);
   for (int b = 0; b < last_bounce; ++b) power *= albedo;
-  return power * float(plane % 2 == 0 ? codes & 0xffffu : codes >> 16) * irradiance_step;
+  return power * value(texel, last_bounce + 1, irradiance_step);
 }
 
 vec3 encode(vec3 light) {
@@ -96,8 +125,9 @@ vec4 signed_color(vec3 difference) {
 
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
-  float ao = float(texelFetch(planes, ivec3(texel, 0), 0).x & 0xffffu) * ao_step;
-  ${kPanels[panel]}
+  float ao = unit_value(texel, 0, ao_step);
+  float visibility = unit_value(texel, visibility_plane, visibility_step);
+  ${statementOf(panel, kCalls[model.id], plain)}
 }
 `;
 }

@@ -63,14 +63,24 @@ export function makeBakes(hemibake, folder, pictures) {
   };
 }
 
+function table(file) {
+  const [head, ...rows] = readFileSync(file, 'utf8').trim().split('\n').map((line) => line.split(','));
+  return rows.map((row) => Object.fromEntries(row.map((cell, i) => [head[i], Number(cell)])));
+}
+
+// Returns the models without constants as tables: {ID: [{visibility, …, 'total_0.0', …}]}.
+export function makeTables(hemibake, folder) {
+  return Object.fromEntries(['visibility', 'visibility-ao', 'bounce-map'].map((model) => {
+    const file = join(folder, `${model}.csv`);
+    execFileSync(hemibake, ['export', 'none', '--model', model, '-o', file]);
+    return [model, table(file)];
+  }));
+}
+
 // Makes a page of each stored curve and its fits. Returns for each the bins that the library says, and its models as
 // tables: {ID: [{ao, direct, bounce_ratio, 'total_0.0', …}]}.
 export function makeCurvePages(hemibake, folder, stored) {
   const run = (...options) => execFileSync(hemibake, options, { cwd: folder, encoding: 'utf8' });
-  const table = (file) => {
-    const [head, ...rows] = readFileSync(join(folder, file), 'utf8').trim().split('\n').map((line) => line.split(','));
-    return rows.map((row) => Object.fromEntries(row.map((cell, i) => [head[i], Number(cell)])));
-  };
   return readdirSync(stored).filter((file) => file.endsWith('.csv')).map((file) => {
     const name = `curves_${basename(file, '.csv')}`;
     mkdirSync(join(folder, name));
@@ -78,7 +88,7 @@ export function makeCurvePages(hemibake, folder, stored) {
     run('fit', join(name, 'curves.csv'), '-o', join(name, 'fit.json'));
     const models = Object.fromEntries(['bounded', 'published'].map((model) => {
       run('export', join(name, 'fit.json'), '--to', 'csv', '--model', model, '-o', join(name, 'model.csv'));
-      return [model, table(join(name, 'model.csv'))];
+      return [model, table(join(folder, name, 'model.csv'))];
     }));
     return { name, models, bins: JSON.parse(run('report', name, '--json')).bins };
   });

@@ -10,7 +10,7 @@ import { dirname, join, resolve } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
-import { kAlbedo, kOtherAlbedo, makeBakes, makeCurvePages } from './bakes.mjs';
+import { kAlbedo, kOtherAlbedo, makeBakes, makeCurvePages, makeTables } from './bakes.mjs';
 import { choose, encode, kChromium, launch, open, pixelOf, probeOf, setAlbedo, setSlider, settle, waitForPicture } from './page.mjs';
 
 const [hemibake, packages] = process.argv.slice(2).map((path) => resolve(path));
@@ -65,7 +65,11 @@ async function expectViews(page, expected, albedo) {
   await expectPixels(page, expected, (probe) => [probe.ao, probe.ao, probe.ao], albedo);
   await choose(page, 'truth');
   await expectPixels(page, expected, (probe) => probe.truth, albedo);
-  for (const model of ['published', 'notes', 'bounded']) {
+  await choose(page, 'plain visibility');
+  await choose(page, 'off');
+  await expectPixels(page, expected, (probe) => [probe.visibility, probe.visibility, probe.visibility], albedo);
+  await choose(page, 'plain ao');
+  for (const model of ['bounce-map', 'visibility-ao', 'visibility', 'published', 'notes', 'bounded']) {
     await choose(page, model);
     await choose(page, 'model');
     await expectPixels(page, expected, (probe) => probe.models[model], albedo);
@@ -79,6 +83,9 @@ async function expectProbes(page, expected) {
     assert.ok(Math.abs(shown.ao - probe.ao) <= kDigits);
     for (let c = 0; c < 3; ++c) {
       assert.ok(Math.abs(shown.rows.off[c] - probe.ao) <= kDigits);
+      const mapped = probe.models['bounce-map'][c];
+      assert.ok(Math.abs(shown.rows['bounce map'][c] - mapped) <= kDigits, `bounce map ${shown.rows['bounce map'][c]}, expected ${mapped}`);
+      assert.ok(Math.abs(shown.rows['map − truth'][c] - (mapped - probe.truth[c])) <= 2 * kDigits);
       assert.ok(Math.abs(shown.rows.model[c] - probe.models.bounded[c]) <= kDigits, `model ${shown.rows.model[c]}`);
       assert.ok(Math.abs(shown.rows.truth[c] - probe.truth[c]) <= kDigits, `truth ${shown.rows.truth[c]}`);
       assert.ok(Math.abs(shown.rows['model − truth'][c] - (probe.models.bounded[c] - probe.truth[c])) <= 2 * kDigits);
@@ -128,14 +135,17 @@ for (const [hash, renderer] of [['', 'WebGL2'], ['#canvas', 'canvas']])
     await setSlider(page, 'bounces', 20);
 
     // Blue where the model is too dark, red where it is too bright.
-    await choose(page, 'difference');
     await setSlider(page, 'range', 0.01);
     const luminance = [0.2126, 0.7152, 0.0722];
-    for (const probe of bakes.expectedOther.probes) {
-      const difference = luminance.reduce((total, weight, c) => total + weight * kOtherAlbedo[c] * (probe.models.bounded[c] - probe.truth[c]), 0);
-      if (Math.abs(difference) < 1e-3) continue;
-      const [red, , blue] = await pixelOf(page, [probe.x, probe.y], kSize);
-      assert.equal(red > blue, difference > 0, `texel ${probe.x},${probe.y}: ${difference}`);
+    for (const model of ['bounded', 'visibility', 'visibility-ao', 'bounce-map']) {
+      await choose(page, model);
+      await choose(page, 'difference');
+      for (const probe of bakes.expectedOther.probes) {
+        const difference = luminance.reduce((total, weight, c) => total + weight * kOtherAlbedo[c] * (probe.models[model][c] - probe.truth[c]), 0);
+        if (Math.abs(difference) < 1e-3) continue;
+        const [red, , blue] = await pixelOf(page, [probe.x, probe.y], kSize);
+        assert.equal(red > blue, difference > 0, `${model}, texel ${probe.x},${probe.y}: ${difference}`);
+      }
     }
     assert.deepEqual(page.complaints, []);
     await page.close();
@@ -150,7 +160,7 @@ test('every bin of every stored curve is what the library says', async () => {
       const { charts, models } = window.hemibake;
       const seriesOf = (label, series) => charts.find(({ element }) => element.ariaLabel.startsWith(label)).make().series
         .filter((each) => each.name.startsWith(series)).map((each) => each.data);
-      const rowOf = (model, { ao }) => [ao, model.direct(ao), 1 - model.escape(ao), ...[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10].map((r) => model.total(ao, r / 10))];
+      const rowOf = (model, { ao }) => [ao, model.direct(ao), 1 - model.escape(ao), ...[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10].map((r) => model.totalOf(ao, r / 10))];
       return {
         totals: seriesOf('All bounces together', 'data, ρ = '),
         sum: seriesOf('Sum of all bounces', 'sum of all bounces')[0],
@@ -179,19 +189,40 @@ test('every bin of every stored curve is what the library says', async () => {
   }
 });
 
+test('models of V and the bounce map are what the library says', async () => {
+  const page = await open(browser, fileOf('whole'));
+  for (const [id, rows] of Object.entries(makeTables(hemibake, folder))) {
+    assert.ok(rows.length > 100);
+    const shown = await page.evaluate(([name, inputs]) => {
+      const { total } = window.hemibake.models.find(({ data }) => data.id === name);
+      return inputs.map((texel) => [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10].map((r) => total(texel, r / 10)));
+    }, [id, rows]);
+    rows.forEach((row, i) => shown[i].forEach((value, r) => {
+      const expected = row[`total_${(r / 10).toFixed(1)}`];
+      assert.ok(Math.abs(value - expected) <= kModelRounding, `${id} at ${JSON.stringify(row)}, albedo ${r / 10}: ${value}`);
+    }));
+  }
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+});
+
 test('comparison: each part shows its own light, and the borders move', async () => {
   const page = await open(browser, fileOf('whole'));
   await waitForPicture(page);
-  const parts = (probe) => (probe.x < 64 / 3 - 1 ? [probe.ao, probe.ao, probe.ao] : probe.x < 128 / 3 - 1 ? probe.models.bounded : probe.truth);
-  await expectPixels(page, { probes: bakes.expected.probes.filter((probe) => [8, 24, 56].includes(probe.x)) }, parts, kAlbedo);
+  const parts = (probe) => [[probe.ao, probe.ao, probe.ao], probe.models['visibility-ao'], probe.models['bounce-map'], probe.truth][Math.floor(probe.x / 16)];
+  assert.deepEqual(new Set(bakes.expected.probes.map((probe) => probe.x)), new Set([8, 24, 40, 56]));
+  await expectPixels(page, bakes.expected, parts, kAlbedo);
   const border = page.locator('.divider').first();
   await border.focus();
   await page.keyboard.press('Home');
   await settle(page);
   assert.equal(await border.getAttribute('aria-valuenow'), '0');
-  await expectPixels(page, { probes: bakes.expected.probes.filter((probe) => probe.x === 8) }, (probe) => probe.models.bounded, kAlbedo);
+  await expectPixels(page, { probes: bakes.expected.probes.filter((probe) => probe.x === 8) }, (probe) => probe.models['visibility-ao'], kAlbedo);
+  await page.locator('.divider').nth(1).focus();
+  await page.keyboard.press('Home');
+  await settle(page);
   const box = await page.locator('.stage canvas').boundingBox();
-  const handle = await page.locator('.divider').nth(1).boundingBox();
+  const handle = await page.locator('.divider').nth(2).boundingBox();
   await page.mouse.move(handle.x + handle.width / 2, handle.y + 40);
   await page.mouse.down();
   await page.mouse.move(box.x + 0.05 * box.width, handle.y + 40, { steps: 3 });
@@ -250,7 +281,9 @@ test('chosen bounces and the chosen model are drawn again', async () => {
   await settle(page);
   assert.ok((await paths()) < all / 2, `${await paths()} of ${all} paths`);
   const text = () => page.locator('#shader pre').textContent();
-  assert.match(await text(), /bounded/);
+  assert.match(await text(), /visibility, float ao_uniform/);
+  await choose(page, 'bounce-map');
+  assert.match(await text(), /multi_bounce\(vec2 map/);
   await choose(page, 'notes');
   assert.match(await text(), /27\.5769/);
   assert.deepEqual(page.complaints, []);
@@ -270,7 +303,7 @@ test('works at the width of a phone', async () => {
   await expectPlots(page, 9);
   assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 360);
   await choose(page, 'model');
-  await expectPixels(page, bakes.expected, (probe) => probe.models.bounded, kAlbedo);
+  await expectPixels(page, bakes.expected, (probe) => probe.models['visibility-ao'], kAlbedo);
   assert.deepEqual(page.complaints, []);
   await page.close();
 });
