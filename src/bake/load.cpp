@@ -21,7 +21,8 @@ Surface read_surface(const MapSettings& settings, double& lowest_m) {
 }
 
 void read_normals(const MapSettings& settings, NormalLength lengths, LoadedMap& map) {
-  const auto encoded = read_normal_map(settings.normal_map, map.surface.width(), map.surface.height());
+  const Grid<glm::vec3> encoded =
+      read_normal_map(settings.normal_map, map.surface.width(), map.surface.height()).values;
   map.surface.normals =
       with_file_context(settings.normal_map, [&] { return decode_normal_map(encoded, *settings.normal_y); });
   if (lengths == NormalLength::kStored) map.normal_lengths = normal_map_lengths(encoded);

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -201,6 +202,13 @@ std::optional<int> choose_channel(const std::vector<std::string>& channels, cons
   return green ? green : find_channel(channels, "Y");
 }
 
+// Returns the indices of the channels that hold normals, as read_normal_map says.
+std::array<int, 3> normal_channels(const std::vector<std::string>& channels) {
+  const auto x = find_channel(channels, "normal.X"), y = find_channel(channels, "normal.Y"),
+             z = find_channel(channels, "normal.Z");
+  return x && y && z ? std::array{*x, *y, *z} : std::array{0, 1, 2};
+}
+
 // Returns what a TIFF of this program says, in the one text that the format has; null for any other.
 Provenance provenance_in_description(const OIIO::ImageSpec& spec) {
   const std::string text(spec.get_string_attribute("ImageDescription"));
@@ -253,7 +261,7 @@ Grid<float> read_height_map(const fs::path& path, const std::string& channel) {
   return heights;
 }
 
-Grid<glm::vec3> read_normal_map(const fs::path& path, int width, int height) {
+NormalImage read_normal_map(const fs::path& path, int width, int height) {
   Reader reader(path);
   const OIIO::ImageSpec& spec = reader.spec();
   if (spec.width != width || spec.height != height)
@@ -261,12 +269,15 @@ Grid<glm::vec3> read_normal_map(const fs::path& path, int width, int height) {
                                     spec.height, width, height));
   if (spec.nchannels < 3)
     reader.refuse_image(fmt::format("has {} channel(s), expected the three of a normal map", spec.nchannels));
-  Grid<glm::vec3> normals(width, height);
+  NormalImage image{Grid<glm::vec3>(width, height), !spec.format.is_floating_point(), {}};
+  const std::array<int, 3> indices = normal_channels(spec.channelnames);
   std::vector<MutablePlane> planes;
-  for (int c = 0; c < 3; ++c)
-    planes.push_back({spec.channelnames[static_cast<size_t>(c)], &normals.values[0][c], 3});
-  reader.read(planes, std::vector<int>{0, 1, 2});
-  return normals;
+  for (int c = 0; c < 3; ++c) {
+    image.channels.push_back(spec.channelnames[static_cast<size_t>(indices[static_cast<size_t>(c)])]);
+    planes.push_back({image.channels.back(), &image.values.values[0][c], 3});
+  }
+  reader.read(planes, indices);
+  return image;
 }
 
 ColorImage read_color_image(const fs::path& path) {
