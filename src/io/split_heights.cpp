@@ -10,8 +10,8 @@ constexpr int kLeastWrap = 128;
 constexpr uint64_t kLeastSteps = 8;
 // Of the steps of one of the upper channel, those that must wrap the lower: tenths.
 constexpr uint64_t kLeastWrapped = 9;
-// Noise of 0..255 steps by 85 in the mean, a smooth channel by a few.
-constexpr uint64_t kLeastRatio = 12;
+// Noise of 0..255 steps by 85 in the mean; a smooth channel by a fraction of that.
+constexpr uint64_t kLeastNoise = 60, kLeastRatio = 4;
 
 }  // namespace
 
@@ -30,6 +30,7 @@ double join_split_height(SplitEncoding encoding, double r, double g, double b) {
 }
 
 void SplitDetector::add(int upper_step, int lower_step) {
+  ++count_;
   upper_sum_ += static_cast<uint64_t>(std::abs(upper_step));
   lower_sum_ += static_cast<uint64_t>(std::abs(lower_step));
   if (std::abs(upper_step) != 1) return;
@@ -38,8 +39,9 @@ void SplitDetector::add(int upper_step, int lower_step) {
 }
 
 bool SplitDetector::is_split() const {
-  if (unit_steps_ < kLeastSteps) return false;
-  return wrapped_steps_ * 10 >= unit_steps_ * kLeastWrapped || lower_sum_ > kLeastRatio * upper_sum_;
+  if (unit_steps_ >= kLeastSteps && wrapped_steps_ * 10 >= unit_steps_ * kLeastWrapped) return true;
+  return upper_sum_ >= kLeastSteps && lower_sum_ >= kLeastNoise * count_ &&
+         lower_sum_ >= kLeastRatio * upper_sum_;
 }
 
 }  // namespace hemibake

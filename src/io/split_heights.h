@@ -1,7 +1,6 @@
 // Joins heights that are split over channels of 8 bits, and recognises them.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "io/height_file.h"
@@ -24,8 +23,8 @@ class SplitDetector {
   bool is_split() const;
 
  private:
-  uint64_t unit_steps_ = 0, wrapped_steps_ = 0;  // of ±1 in `upper`, and those where `lower` wraps
-  uint64_t upper_sum_ = 0, lower_sum_ = 0;       // of absolute steps
+  uint64_t unit_steps_ = 0, wrapped_steps_ = 0;         // of ±1 in `upper`, and those where `lower` wraps
+  uint64_t count_ = 0, upper_sum_ = 0, lower_sum_ = 0;  // of absolute steps
 };
 
 }  // namespace hemibake
