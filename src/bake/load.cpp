@@ -1,7 +1,10 @@
 #include "bake/load.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "core/error.h"
 #include "io/file_context.h"
 #include "io/height_file.h"
 #include "io/image_io.h"
@@ -11,8 +14,21 @@
 namespace hemibake {
 namespace {
 
+void refuse_holes(const std::filesystem::path& path, const HeightFile& file) {
+  const auto first = std::ranges::find(file.holes.values, 1);
+  if (first == file.holes.values.end()) return;
+  const auto texel = first - file.holes.values.begin();
+  throw InputError(
+      fmt::format("{}: {} texels have no height (first at {},{}), expected heights everywhere, or "
+                  "--holes fill",
+                  path.string(), std::ranges::count(file.holes.values, 1), texel % file.holes.width,
+                  texel / file.holes.width));
+}
+
 Surface read_surface(const MapSettings& settings, double& lowest_m) {
-  Grid<float> heights = read_height_file(settings.map, settings.file).values;
+  HeightFile file = read_height_file(settings.map, settings.file);
+  refuse_holes(settings.map, file);
+  Grid<float> heights = std::move(file.values);
   return with_file_context(settings.map, [&] {
     if (settings.filter.radius > 0) heights = bilateral_filter(heights, settings.filter, settings.edge);
     lowest_m = settings.amplitude_m * static_cast<double>(*std::ranges::min_element(heights.values));

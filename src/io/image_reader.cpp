@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <numeric>
 
 #include "core/context.h"
-#include "core/error.h"
 #include "core/parallel.h"
 #include "io/png_check.h"
 #include "surface/surface.h"
