@@ -155,6 +155,23 @@ ImageReader::ImageReader(const fs::path& path, const ImageChoice& choice) : Chan
   if (format == "openexr") check_windows(*this, spec_, choice);
   if (format == "tiff") check_tiff(*this, spec_);
   note_facts(pages);
+  if (format == "webp" && facts_.alpha) check_binary_alpha();
+}
+
+// Refuses partial transparency: OpenImageIO 2.4 multiplies the colours of a WebP by alpha, whatever it is
+// told.
+void ImageReader::check_binary_alpha() {
+  bool is_partial = false, is_seen = false;
+  read(*facts_.alpha, *facts_.alpha + 1, [&](size_t, std::span<const float> values) {
+    for (const float alpha : values) {
+      is_partial = is_partial || (alpha != 0 && alpha != 1);
+      is_seen = is_seen || alpha != 0;
+    }
+  });
+  if (is_partial || !is_seen)
+    refuse(
+        "is a WebP with partial or no opacity, which loses its values in reading, expected it opaque, or as "
+        "PNG");
 }
 
 // Returns the subimage that is read: overviews and masks are none of their own.
@@ -184,7 +201,8 @@ void ImageReader::note_facts(const std::vector<TiffPage>& pages) {
   if (spec_.alpha_channel >= 0) facts_.alpha = spec_.alpha_channel;
   facts_.format = format_name_of(format);
   note_samples(spec_, format, facts_);
-  const int orientation = spec_.get_int_attribute("Orientation", 1);
+  const int orientation =
+      format == "webp" ? webp_orientation(path()) : spec_.get_int_attribute("Orientation", 1);
   facts_.orientation = orientation >= 1 && orientation <= 8 ? orientation : 1;
   facts_.pixel_aspect = pixel_aspect_of(spec_, format);
   if (facts_.orientation > 4) facts_.pixel_aspect = 1 / facts_.pixel_aspect;

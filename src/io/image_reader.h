@@ -37,6 +37,7 @@ class ImageReader : public ChannelReader {
   };
 
   int find_part(const ImageChoice& choice, const std::vector<TiffPage>& pages) const;
+  void check_binary_alpha();
   void note_facts(const std::vector<TiffPage>& pages);
   bool read_rows(const Window& window, OIIO::TypeDesc type, void* values);
 

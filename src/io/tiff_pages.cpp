@@ -1,5 +1,6 @@
 // Layout: TIFF Revision 6.0, Adobe 1992, section 2; BigTIFF:
 // libtiff.gitlab.io/libtiff/specification/bigtiff.html.
+// WebP: developers.google.com/speed/webp/docs/riff_container.
 #include "io/tiff_pages.h"
 
 #include <algorithm>
@@ -7,17 +8,21 @@
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <string_view>
+
+#include "io/sample.h"
 
 namespace hemibake {
 namespace {
 
-constexpr uint64_t kSubfileTypeTag = 254, kOldSubfileTypeTag = 255, kNoDataTag = 42113;
+constexpr uint64_t kSubfileTypeTag = 254, kOldSubfileTypeTag = 255, kNoDataTag = 42113, kOrientationTag = 274;
 constexpr size_t kMaxPages = 65536, kMaxEntries = 4096, kMaxTextBytes = 64;
 
 // Integers of a file in its byte order; failed() after one that is not there.
 class TiffBytes {
  public:
-  explicit TiffBytes(const std::filesystem::path& path) : file_(path, std::ios::binary) {
+  TiffBytes(const std::filesystem::path& path, uint64_t begin)
+      : file_(path, std::ios::binary), begin_(begin) {
     const std::string mark = text(0, 2);
     big_endian_ = mark == "MM";
     if (!big_endian_ && mark != "II") failed_ = true;
@@ -28,7 +33,7 @@ class TiffBytes {
   std::string text(uint64_t offset, size_t bytes) {
     std::string found(bytes, '\0');
     file_.clear();
-    file_.seekg(static_cast<std::streamoff>(offset));
+    file_.seekg(static_cast<std::streamoff>(begin_ + offset));
     file_.read(found.data(), static_cast<std::streamsize>(bytes));
     if (file_.gcount() != static_cast<std::streamsize>(bytes)) failed_ = true;
     return found;
@@ -44,6 +49,7 @@ class TiffBytes {
 
  private:
   std::ifstream file_;
+  uint64_t begin_;
   bool big_endian_ = false, failed_ = false;
 };
 
@@ -60,6 +66,8 @@ void read_entry(TiffBytes& file, uint64_t at, const Widths& widths, TiffPage& pa
     page.is_mask = (bits & 4) != 0;
   } else if (tag == kOldSubfileTypeTag) {
     page.is_reduced = file.integer(value_at, 2) == 2;
+  } else if (tag == kOrientationTag) {
+    page.orientation = static_cast<int>(file.integer(value_at, 2));
   } else if (tag == kNoDataTag) {
     const auto bytes = std::min<size_t>(kMaxTextBytes, file.integer(at + 4, widths.offset));
     const std::string text =
@@ -72,8 +80,8 @@ void read_entry(TiffBytes& file, uint64_t at, const Widths& widths, TiffPage& pa
 
 }  // namespace
 
-std::vector<TiffPage> tiff_pages(const std::filesystem::path& path) {
-  TiffBytes file(path);
+std::vector<TiffPage> tiff_pages(const std::filesystem::path& path, uint64_t begin) {
+  TiffBytes file(path, begin);
   if (file.failed()) return {};
   const uint64_t version = file.integer(2, 2);
   if (version != 42 && version != 43) return {};
@@ -93,6 +101,29 @@ std::vector<TiffPage> tiff_pages(const std::filesystem::path& path) {
     at = file.integer(at + widths.count + entries * widths.entry, widths.offset);
   }
   return file.failed() ? std::vector<TiffPage>() : pages;
+}
+
+int webp_orientation(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  char head[12];
+  if (!file.read(head, sizeof(head)) || std::string_view(head, 4) != "RIFF" ||
+      std::string_view(head + 8, 4) != "WEBP")
+    return 1;
+  uint64_t at = sizeof(head);
+  constexpr SampleType kLong{'u', 4, false};
+  for (char chunk[8]; file.seekg(static_cast<std::streamoff>(at)) && file.read(chunk, sizeof(chunk));) {
+    const auto size = static_cast<uint64_t>(decode_sample(chunk + 4, kLong));
+    at += sizeof(chunk);
+    if (std::string_view(chunk, 4) == "EXIF") {
+      char mark[6];
+      const bool has_mark =
+          file.read(mark, sizeof(mark)) && std::string_view(mark, 6) == std::string_view("Exif\0\0", 6);
+      const std::vector<TiffPage> pages = tiff_pages(path, at + (has_mark ? sizeof(mark) : 0));
+      return pages.empty() ? 1 : pages[0].orientation;
+    }
+    at += size + size % 2;
+  }
+  return 1;
 }
 
 }  // namespace hemibake

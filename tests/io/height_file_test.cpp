@@ -167,14 +167,57 @@ TEST_F(HeightFiles, WebpIsRead) {
   for (size_t i = 0; i < 256; ++i)
     EXPECT_NEAR(255 * file.values[i], static_cast<double>(i), 3.001) << i;  // written with loss
   EXPECT_EQ(read_height_map(folder_ / "a.webp").values, file.values.values);
-  // Alpha multiplies nothing.
-  std::vector<uint8_t> clear;
-  for (int i = 0; i < 256; ++i)
-    clear.insert(clear.end(), {200, 200, 200, static_cast<uint8_t>(i < 128 ? 51 : 255)});
-  OIIO::ImageSpec with_alpha = spec_of(16, 16, {"R", "G", "B", "A"});
-  with_alpha.attribute("oiio:UnassociatedAlpha", 1);
-  write_foreign(folder_ / "alpha.webp", with_alpha, clear);
-  EXPECT_NEAR(255 * read("alpha.webp").values[17], 200, 3);
+  // OpenImageIO multiplies by alpha: only what is opaque is as stored.
+  const auto write_alpha = [&](uint8_t alpha) {
+    std::vector<uint8_t> texels;
+    for (int i = 0; i < 256; ++i)
+      texels.insert(texels.end(), {100, 100, 100, i < 128 ? alpha : uint8_t{255}});
+    write_foreign(folder_ / "alpha.webp", spec_of(16, 16, {"R", "G", "B", "A"}), texels);
+  };
+  write_alpha(0);
+  const HeightFile masked = read("alpha.webp");
+  EXPECT_THAT(masked.holes.values, testing::Contains(1).Times(128));
+  EXPECT_NEAR(255 * masked.values[200], 100, 3);
+  write_alpha(200);
+  EXPECT_THAT(fault("alpha.webp"), HasSubstr("alpha.webp: is a WebP with partial or no opacity"));
+}
+
+// EXIF of one entry, the orientation.
+std::string exif_of(int orientation) {
+  using namespace std::string_literals;
+  return "MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0"s + static_cast<char>(orientation) +
+         "\0\0\0\0\0\0"s;
+}
+
+TEST_F(HeightFiles, OrientationsOfPhotographersFormats) {
+  const auto write_ramp = [&](const char* name, int orientation) {
+    OIIO::ImageSpec spec = spec_of(32, 16, {"R", "G", "B"});
+    if (orientation > 0) spec.attribute("Orientation", orientation);
+    std::vector<uint8_t> values;
+    for (int i = 0; i < 512; ++i) values.insert(values.end(), 3, static_cast<uint8_t>(i % 32 * 8));
+    write_foreign(folder_ / name, spec, values);
+  };
+  // Turned by 90 degrees clockwise: what grows to the right grows down.
+  const auto expect_turned = [&](const char* name) {
+    const HeightFile file = read(name);
+    EXPECT_EQ(file.orientation, 6) << name;
+    ASSERT_EQ(file.values.width, 16) << name;
+    for (int y = 0; y < 32; ++y) EXPECT_NEAR(255 * file.values(3, y), 8 * y, 6) << name;
+  };
+  write_ramp("a.jpg", 6);
+  expect_turned("a.jpg");
+  write_ramp("plain.webp", 0);
+  const std::string body = read_bytes(folder_ / "plain.webp").substr(12);
+  for (const std::string& mark : {std::string(), std::string("Exif\0\0", 6)}) {
+    const std::string exif = mark + exif_of(6);
+    const auto length = [](size_t size) { return std::string{static_cast<char>(size), 0, 0, 0}; };
+    const std::string extended = std::string("VP8X\x0a\0\0\0\x08\0\0\0\x1f\0\0\x0f\0\0", 18);
+    const std::string all = "WEBP" + extended + body + "EXIF" + length(exif.size()) + exif;
+    std::string size = length(all.size());
+    size[1] = static_cast<char>(all.size() >> 8);
+    write_bytes(folder_ / "a.webp", "RIFF" + size + all);
+    expect_turned("a.webp");
+  }
 }
 
 TEST_F(HeightFiles, OverviewsAndMasksAreNoFurtherImages) {
