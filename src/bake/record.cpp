@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "io/geo_place.h"
 
 namespace hemibake {
 namespace {
@@ -119,6 +120,7 @@ Provenance record_of(const MapSettings& map_settings, const LoadedMap& map, cons
                      std::string_view command) {
   Provenance p = make_provenance(command);
   record_map(map_settings, map.sha256, p);
+  if (map.place) record_place(*map.place, p);
   p["texel_size_m"] = result.texel_size_m;
   BakeSettings settings = result.settings;
   record_fields(bake_fields(settings), p);

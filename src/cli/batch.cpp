@@ -12,6 +12,7 @@
 #include "bake/record.h"
 #include "cli/print/warnings.h"
 #include "core/error.h"
+#include "io/geo_place.h"
 #include "io/image_io.h"
 #include "io/output_file.h"
 
@@ -50,7 +51,8 @@ std::vector<fs::path> images_in(const fs::path& folder) {
     std::error_code not_there;
     const bool is_image =
         entry->is_regular_file(not_there) && path.filename().string()[0] != '.' &&
-        std::ranges::find(kImageExtensions, lower_case_extension(path)) != kImageExtensions.end();
+        (is_geo_file(path) ||
+         std::ranges::find(kImageExtensions, lower_case_extension(path)) != kImageExtensions.end());
     if (!is_image) continue;
     const ImageKind kind = kind_of(path);
     if (kind == ImageKind::kMap) images.push_back(path);
