@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "core/error.h"
+#include "io/byte_reader.h"
 #include "io/output_file.h"
 
 namespace hemibake {
@@ -26,28 +25,6 @@ constexpr std::array kExtensions = {".hgt", ".asc", ".bil", ".bip", ".bsq", ".vr
 // ModelPixelScale, ModelTiepoint, ModelTransformation, GeoKeyDirectory.
 constexpr std::array<uint64_t, 4> kGeoTags = {33550, 33922, 34264, 34735};
 constexpr uint64_t kMostTags = 4096;
-
-// Reads unsigned integers of either byte order out of a file; 0 beyond its end.
-class ByteReader {
- public:
-  explicit ByteReader(const fs::path& path) : file_(path, std::ios::binary) {}
-
-  std::endian order = std::endian::little;
-
-  uint64_t at(uint64_t offset, int bytes) {
-    std::array<unsigned char, 8> raw{};
-    file_.clear();
-    file_.seekg(static_cast<std::streamoff>(offset));
-    if (!file_.read(reinterpret_cast<char*>(raw.data()), bytes)) return 0;
-    uint64_t value = 0;
-    for (int i = 0; i < bytes; ++i)
-      value = value << 8 | raw[static_cast<size_t>(order == std::endian::big ? i : bytes - 1 - i)];
-    return value;
-  }
-
- private:
-  std::ifstream file_;
-};
 
 // Reads the first directory of tags: TIFF 6.0, and BigTIFF with its wider numbers.
 bool has_geo_tags(const fs::path& path) {

@@ -11,6 +11,7 @@
 #include "io/file_context.h"
 #include "io/geo_band.h"
 #include "io/geo_place.h"
+#include "io/netcdf_check.h"
 #include "io/output_file.h"
 #include "surface/surface.h"
 
@@ -23,13 +24,16 @@ constexpr int64_t kValuesPerBlock = int64_t{1} << 21;
 // Heights over the longer side of a map whose coordinates can only be degrees.
 constexpr double kSteepestLand = 2;
 
+constexpr const char* kNetworkSources[] = {"/vsicurl", "/vsis3",    "/vsigs",   "/vsiaz",     "/vsiadls",
+                                           "/vsioss",  "/vsiswift", "/vsihdfs", "/vsiwebhdfs"};
+
 // Refuses a VRT that names anything but files of this machine.
 void check_sources(const fs::path& path) {
   if (lower_case_extension(path) != ".vrt") return;
   std::ifstream file(path, std::ios::binary);
   for (std::string line; std::getline(file, line);) {
-    const bool is_source = line.find("Source") != std::string::npos;
-    if (line.find("/vsi") != std::string::npos || (is_source && line.find("://") != std::string::npos))
+    const auto names = [&](const char* text) { return line.find(text) != std::string::npos; };
+    if (std::ranges::any_of(kNetworkSources, names) || (names("Source") && names("://")))
       throw InputError(
           "names a source that is no file here, expected files of this machine: fetch them first");
   }
@@ -37,6 +41,7 @@ void check_sources(const fs::path& path) {
 
 GdalDataset open_dataset(const GdalLibrary& gdal, const fs::path& path, const GdalFaults& faults) {
   check_sources(path);
+  if (const std::string fault = netcdf_error(path); !fault.empty()) throw InputError(fault);
   GdalDataset dataset(gdal.GDALOpenEx(fs::absolute(path).string().c_str(),
                                       GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
                                       nullptr, nullptr));

@@ -13,6 +13,8 @@ namespace {
 
 // UTM stays within .1 % over its zone.
 constexpr double kExactScale = 0.005;
+// Web Mercator is spherical on an ellipsoid: .7 % apart at the equator.
+constexpr double kMostStretch = 0.01;
 // Distortion over the map above which one size for all texels would bend slopes.
 constexpr double kMostScaleSpread = 0.1;
 // Shear over the whole raster, in texels, that is rounding.
@@ -44,7 +46,7 @@ void measure_units(const GeoRaster& raster, const GeoLocator& locator, GeoPlace&
   const std::optional<GroundScale> middle = locator.scale_at(raster.width / 2.0, raster.height / 2.0);
   if (!middle) return;
   const double ratio = middle->x / middle->y;
-  bool uneven = std::abs(ratio - 1) > kExactScale;
+  bool uneven = std::abs(ratio - 1) > kMostStretch;
   for (const double x : {0.0, static_cast<double>(raster.width)})
     for (const double y : {0.0, static_cast<double>(raster.height)})
       if (const std::optional<GroundScale> corner = locator.scale_at(x, y))
