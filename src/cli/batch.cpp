@@ -50,7 +50,7 @@ std::vector<fs::path> images_in(const fs::path& folder) {
     const fs::path& path = entry->path();
     std::error_code not_there;
     const bool is_image =
-        entry->is_regular_file(not_there) && path.filename().string()[0] != '.' &&
+        entry->is_regular_file(not_there) && path.filename().string()[0] != '.' && !is_geo_header(path) &&
         (is_geo_file(path) ||
          std::ranges::find(kImageExtensions, lower_case_extension(path)) != kImageExtensions.end());
     if (!is_image) continue;

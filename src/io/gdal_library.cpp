@@ -50,6 +50,8 @@ GdalLibrary load_library() {
 #undef HEMIBAKE_GDAL_LOAD
   for (const auto& [name, value] : kOptions) gdal.CPLSetConfigOption(name, value);
   gdal.OSRSetPROJEnableNetwork(0);
+  // Also what GDAL, once there, hears from the TIFF library of others.
+  gdal.CPLSetErrorHandler(gdal.CPLQuietErrorHandler);
   // A driver that this build of GDAL lacks is missed only where a file needs it.
   for (const char* name : kDriverFunctions)
     if (void* function = dlsym(library, name)) reinterpret_cast<void (*)()>(function)();

@@ -16,12 +16,13 @@ namespace hemibake {
 
 // Every function of GDAL that is called.
 #define HEMIBAKE_GDAL_FUNCTIONS(use)                                                                         \
-  use(CPLGetErrorHandlerUserData) use(CPLPopErrorHandler) use(CPLPushErrorHandlerEx) use(CPLSetConfigOption) \
-      use(CSLDestroy) use(GDALClose) use(GDALCreate) use(GDALDatasetRasterIO) use(GDALGetBlockSize) use(     \
-          GDALGetDataTypeName) use(GDALGetDataTypeSizeBits) use(GDALGetDatasetDriver)                        \
-          use(GDALGetDescription) use(GDALGetDriverByName) use(GDALGetDriverLongName) use(                   \
-              GDALGetDriverShortName) use(GDALGetGeoTransform) use(GDALGetMaskBand) use(GDALGetMaskFlags)    \
-              use(GDALGetMetadata) use(GDALGetRasterBand) use(GDALGetRasterColorInterpretation) use(         \
+  use(CPLGetErrorHandlerUserData) use(CPLPopErrorHandler) use(CPLPushErrorHandlerEx) use(                    \
+      CPLQuietErrorHandler) use(CPLSetConfigOption) use(CPLSetErrorHandler) use(CSLDestroy) use(GDALClose)   \
+      use(GDALCreate) use(GDALDatasetRasterIO) use(GDALGetBlockSize) use(GDALGetDataTypeName) use(           \
+          GDALGetDataTypeSizeBits) use(GDALGetDatasetDriver) use(GDALGetDescription)                         \
+          use(GDALGetDriverByName) use(GDALGetDriverLongName) use(GDALGetDriverShortName) use(               \
+              GDALGetGeoTransform) use(GDALGetMaskBand) use(GDALGetMaskFlags) use(GDALGetMetadata)           \
+              use(GDALGetRasterBand) use(GDALGetRasterColorInterpretation) use(                              \
                   GDALGetColorInterpretationName) use(GDALGetRasterCount) use(GDALGetRasterDataType)         \
                   use(GDALGetRasterNoDataValue) use(GDALGetRasterOffset) use(GDALGetRasterScale) use(        \
                       GDALGetRasterUnitType) use(GDALGetRasterXSize) use(GDALGetRasterYSize)                 \

@@ -27,6 +27,8 @@ constexpr std::array kUnits = {Unit{"", 1},
                                Unit{"metres", 1},
                                Unit{"unknown", 1},
                                Unit{"none", 1},
+                               Unit{"unspecified", 1},
+                               Unit{"undefined", 1},
                                Unit{"1", 1},
                                Unit{"km", 1000},
                                Unit{"kilometer", 1000},
@@ -131,6 +133,17 @@ int find_band(const GeoRaster& raster, const std::string& channel) {
       fmt::format("{{channel}} {}: has no such band, expected one of {}", channel, joined(names)));
 }
 
+// Returns GDAL's mask, or an alpha band of a type that GDAL does not take for one; null: none.
+GDALRasterBandH mask_of(const GeoRaster& raster, GDALRasterBandH band) {
+  const GdalLibrary& gdal = raster.gdal;
+  if (gdal.GDALGetMaskFlags(band) != GMF_ALL_VALID) return gdal.GDALGetMaskBand(band);
+  for (int i = 1; i <= gdal.GDALGetRasterCount(raster.dataset); ++i) {
+    const GDALRasterBandH other = gdal.GDALGetRasterBand(raster.dataset, i);
+    if (other != band && gdal.GDALGetRasterColorInterpretation(other) == GCI_AlphaBand) return other;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::vector<std::string> band_names(const GeoRaster& raster) {
@@ -163,6 +176,7 @@ GeoBand choose_band(const GeoRaster& raster, const std::string& channel) {
   GeoBand band;
   const int number = find_band(raster, channel);
   band.handle = gdal.GDALGetRasterBand(raster.dataset, number);
+  band.mask = mask_of(raster, band.handle);
   band.name = band_names(raster)[static_cast<size_t>(number - 1)];
   if (gdal.GDALDataTypeIsComplex(gdal.GDALGetRasterDataType(band.handle)))
     throw InputError("holds complex numbers, expected heights");

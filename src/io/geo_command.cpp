@@ -27,14 +27,12 @@ std::string quoted(const std::string& word) {
   return out + "'";
 }
 
-// The conformal projection of metres about a place: UTM, or stereographic about the poles and on other
-// bodies.
+// The conformal projection of metres about a place: UTM, or stereographic near the poles and on other bodies.
 std::string projection_about(GeoPoint degrees, double radius_m) {
-  if (std::abs(radius_m / kEarthRadiusM - 1) > 0.01)
-    return fmt::format("+proj=stere +lat_0={:.4f} +lon_0={:.4f} +R={:.0f} +units=m", degrees.y, degrees.x,
-                       radius_m);
-  if (degrees.y >= 84) return "EPSG:3413";
-  if (degrees.y <= -80) return "EPSG:3031";
+  const bool on_earth = std::abs(radius_m / kEarthRadiusM - 1) < 0.01;
+  if (!on_earth || degrees.y >= 84 || degrees.y <= -80)
+    return fmt::format("+proj=stere +lat_0={:.4f} +lon_0={:.4f} {} +units=m", degrees.y, degrees.x,
+                       on_earth ? "+datum=WGS84" : fmt::format("+R={:.0f}", radius_m));
   const int zone = std::clamp(static_cast<int>(std::floor((degrees.x + 180) / 6)) + 1, 1, 60);
   return fmt::format("EPSG:{}", (degrees.y < 0 ? 32700 : 32600) + zone);
 }

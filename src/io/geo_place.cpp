@@ -22,6 +22,8 @@ constexpr std::array kExtensions = {".hgt", ".asc", ".bil", ".bip", ".bsq", ".vr
                                     ".img", ".flt", ".adf", ".dt0", ".dt1", ".dt2", ".grd", ".sdat",
                                     ".xyz", ".bt",  ".rst", ".ddf", ".ter", ".map"};
 
+constexpr std::array kWithHeader = {".bil", ".bip", ".bsq", ".flt", ".img", ".dem"};
+
 // ModelPixelScale, ModelTiepoint, ModelTransformation, GeoKeyDirectory.
 constexpr std::array<uint64_t, 4> kGeoTags = {33550, 33922, 34264, 34735};
 constexpr uint64_t kMostTags = 4096;
@@ -72,6 +74,14 @@ bool is_geo_file(const fs::path& path) {
   const std::string extension = lower_case_extension(path);
   if (extension == ".tif" || extension == ".tiff") return has_geo_tags(path);
   return std::ranges::find(kExtensions, extension) != kExtensions.end();
+}
+
+bool is_geo_header(const fs::path& path) {
+  if (lower_case_extension(path) != ".hdr") return false;
+  return std::ranges::any_of(kWithHeader, [&](const char* extension) {
+    std::error_code not_there;
+    return fs::is_regular_file(fs::path(path).replace_extension(extension), not_there);
+  });
 }
 
 void record_place(const GeoPlace& place, Provenance& provenance) {

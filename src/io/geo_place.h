@@ -13,6 +13,9 @@ namespace hemibake {
 // is no regular file, or empty.
 bool is_geo_file(const std::filesystem::path& path);
 
+// Returns whether a file is the header of a raster beside it: map.hdr of map.bil.
+bool is_geo_header(const std::filesystem::path& path);
+
 // Adds `geo_crs`, `geo_transform` and `geo_nodata`, all text, to a record.
 void record_place(const GeoPlace& place, Provenance& provenance);
 

@@ -74,7 +74,7 @@ class BandReader {
     rows_ = std::clamp(most / block_height * block_height, std::min(block_height, most), raster_.height);
     const size_t values = static_cast<size_t>(rows_) * static_cast<size_t>(raster_.width);
     stored_.resize(values);
-    if (raster_.gdal.GDALGetMaskFlags(band_.handle) != GMF_ALL_VALID) mask_.resize(values);
+    if (band_.mask) mask_.resize(values);
   }
 
   void read(HeightFile& file) {
@@ -114,7 +114,7 @@ class BandReader {
                         begin, faults_.text()));
     };
     take(band_.handle, stored_.data(), GDT_Float64);
-    if (!mask_.empty()) take(raster_.gdal.GDALGetMaskBand(band_.handle), mask_.data(), GDT_Byte);
+    if (band_.mask) take(band_.mask, mask_.data(), GDT_Byte);
   }
 
   const GeoRaster& raster_;

@@ -107,7 +107,7 @@ TEST_F(Terrain, IsFoundInFoldersAndDoneOnce) {
   const std::string line = fmt::format("textures maps -o out --maps ao --format tif{}", kQuick);
   run_well(line);
   expect_same_place("out/a_ao.tif", "maps/a.tif");
-  expect_same_place("out/b_ao.tif", "maps/b.bil");
+  EXPECT_EQ(info("out/b_ao.tif")["geoTransform"], info("maps/b.bil")["geoTransform"]);
   EXPECT_THAT(hemibake(line).out + hemibake(line).err,
               AllOf(HasSubstr("a.tif: done before"), HasSubstr("b.bil: done before")));
 }
