@@ -71,7 +71,9 @@ class BandReader {
     int block_width = 0, block_height = 1;
     raster_.gdal.GDALGetBlockSize(band_.handle, &block_width, &block_height);
     const int most = static_cast<int>(std::max<int64_t>(1, kValuesPerBlock / raster_.width));
-    rows_ = std::clamp(most / block_height * block_height, std::min(block_height, most), raster_.height);
+    // Whole blocks, but no more than memory is meant for.
+    rows_ =
+        std::min(raster_.height, std::max(most / block_height * block_height, std::min(block_height, most)));
     const size_t values = static_cast<size_t>(rows_) * static_cast<size_t>(raster_.width);
     stored_.resize(values);
     if (band_.mask) mask_.resize(values);
