@@ -15,7 +15,7 @@ using testing::StartsWith;
 
 constexpr const char* kQuick = " --rays 4 --edge open";
 
-class Terrain : public GeoTest {
+class TerrainFiles : public GeoTest {
  protected:
   CommandOutcome hemibake(const std::string& arguments) const {
     return run_command("cd '" + folder_.path().string() + "' && '" HEMIBAKE_BINARY "' " + arguments,
@@ -48,7 +48,7 @@ class Terrain : public GeoTest {
   }
 };
 
-TEST_F(Terrain, TexturesKeepThePlaceOfTheirMap) {
+TEST_F(TerrainFiles, TexturesKeepThePlaceOfTheirMap) {
   gdal(
       "gdal_translate -q -a_nodata -9999 a.tif north.tif && gdal_translate -q -a_nodata none a.tif "
       "without.tif && "
@@ -75,7 +75,7 @@ TEST_F(Terrain, TexturesKeepThePlaceOfTheirMap) {
   }
 }
 
-TEST_F(Terrain, TheCommandForDegreesGivesAMapThatBakes) {
+TEST_F(TerrainFiles, TheCommandForDegreesGivesAMapThatBakes) {
   for (const char* corners : {"8 47 8.0333 46.975", "-70 -33 -69.96 -33.03", "10 86 10.4 85.97"}) {
     gdal(fmt::format(
         "rm -f out.tif && gdal_translate -q -a_nodata none -a_srs EPSG:4326 -a_ullr {} a.tif 'my deg.tif'",
@@ -89,7 +89,7 @@ TEST_F(Terrain, TheCommandForDegreesGivesAMapThatBakes) {
   }
 }
 
-TEST_F(Terrain, IsRefusedInOneLineThatNamesTheFile) {
+TEST_F(TerrainFiles, IsRefusedInOneLineThatNamesTheFile) {
   write_bytes(folder_ / "cut.tif", read_bytes(folder_ / "a.tif").substr(0, 3000));
   write_vrt("missing.vrt", "", "", "no.tif");
   write_vrt("url.vrt", "", "", "/vsicurl/http://127.0.0.1:9/a.tif");
@@ -102,7 +102,7 @@ TEST_F(Terrain, IsRefusedInOneLineThatNamesTheFile) {
   }
 }
 
-TEST_F(Terrain, IsFoundInFoldersAndDoneOnce) {
+TEST_F(TerrainFiles, IsFoundInFoldersAndDoneOnce) {
   gdal("mkdir maps && cp a.tif maps/ && gdal_translate -q -of EHdr a.tif maps/b.bil");
   const std::string line = fmt::format("textures maps -o out --maps ao --format tif{}", kQuick);
   run_well(line);
