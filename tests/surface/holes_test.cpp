@@ -92,7 +92,7 @@ TEST(SquareTexels, AWrappingMapKeepsItsPeriodAndItsTexelsAtOddRatios) {
 
 TEST(SquareTexels, RefusesWhatIsFarFromSquare) {
   EXPECT_THROW(make_texels_square(Grid<float>(4, 4, 0.0f), 1, 1000, Edge::kWrap), InputError);
-  EXPECT_THROW(make_texels_square(Grid<float>(16384, 16384, 0.0f), 1, 2, Edge::kWrap), InputError);
+  EXPECT_THROW(make_texels_square(Grid<float>(4000000, 1, 0.0f), 100, 1, Edge::kWrap), InputError);
   EXPECT_EQ(make_texels_square(Grid<float>(4, 4, 1.0f), 2, 2, Edge::kOpen).heights.size(), 16u);
   EXPECT_EQ(make_texels_square(Grid<float>(1, 1, 1.0f), 2, 1, Edge::kWrap).heights.size(), 2u);
 }
