@@ -180,9 +180,9 @@ GeoBand choose_band(const GeoRaster& raster, const std::string& channel) {
   band.name = band_names(raster)[static_cast<size_t>(number - 1)];
   if (gdal.GDALDataTypeIsComplex(gdal.GDALGetRasterDataType(band.handle)))
     throw InputError("holds complex numbers, expected heights");
-  band.metres_per_value = metres_per_value(raster, band.handle);
-  band.scale = gdal.GDALGetRasterScale(band.handle, nullptr) * band.metres_per_value;
-  band.offset = gdal.GDALGetRasterOffset(band.handle, nullptr) * band.metres_per_value;
+  const double metres = metres_per_value(raster, band.handle);
+  band.scale = gdal.GDALGetRasterScale(band.handle, nullptr) * metres;
+  band.offset = gdal.GDALGetRasterOffset(band.handle, nullptr) * metres;
   int has_no_data = 0;
   const double no_data = gdal.GDALGetRasterNoDataValue(band.handle, &has_no_data);
   if (has_no_data) band.no_data = no_data;

@@ -13,7 +13,6 @@ struct GeoBand {
   GDALRasterBandH mask = nullptr;  // 0 where there is no height; null: none
   std::string name;
   double scale = 1, offset = 0;  // metres = stored · scale + offset
-  double metres_per_value = 1;   // part of both: of the unit alone
   std::optional<double> no_data;
 };
 

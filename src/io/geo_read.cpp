@@ -184,7 +184,6 @@ std::optional<HeightFile> read_dataset(const fs::path& path, const HeightFileOpt
     throw InputError("holds no height at all: every texel is NoData, expected heights");
   if (file.place) {
     file.place->no_data = band.no_data ? band.no_data : options.no_data;
-    file.place->metres_per_value = band.metres_per_value;
     check_not_degrees(raster, file);
     if (file.place->transform[5] > 0) turn_upside_down(file);
   }

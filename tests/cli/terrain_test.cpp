@@ -11,6 +11,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 constexpr const char* kQuick = " --rays 4 --edge open";
@@ -43,6 +44,15 @@ class TerrainFiles : public GeoTest {
       EXPECT_EQ(of_made[key], of_source[key]) << key << " of " << made;
     EXPECT_EQ(of_made["bands"][0].value("noDataValue", nlohmann::json()),
               of_source["bands"][0].value("noDataValue", nlohmann::json()));
+    if (run_command("gdalcompare.py", folder_.path()).exit_code != 127) {
+      const std::string differences =
+          run_command("cd '" + folder_.path().string() + "' && gdalcompare.py " + source + " " + made,
+                      folder_.path())
+              .out;
+      EXPECT_THAT(differences, HasSubstr("Differences Found"));
+      for (const char* kind : {"SRS", "GeoTransforms", "nodata", "Size"})
+        EXPECT_THAT(differences, Not(HasSubstr(kind))) << made;
+    }
     EXPECT_EQ(of_made["metadata"]["IMAGE_STRUCTURE"]["COMPRESSION"], "DEFLATE");
     EXPECT_EQ(of_made["bands"][0]["block"], nlohmann::json({256, 256}));
   }
