@@ -73,8 +73,9 @@ void take_several_maps(std::vector<Field>& fields, std::vector<std::string>& map
   const auto field = std::ranges::find(fields, "MAP", &Field::name);
   field->value = texts(maps);
   field->help =
-      "height map: PNG, TIFF, EXR or anything else OpenImageIO reads; several, or a folder of them: each is "
-      "done, bad ones are named, done ones skipped";
+      "height map: PNG, TIFF, EXR or anything else OpenImageIO reads, or terrain (GeoTIFF, VRT, ...) in "
+      "metres; "
+      "several, or a folder of them: each is done, bad ones are named, done ones skipped";
 }
 
 MapOutcome skipped(const fs::path& map, const fs::path& output) {

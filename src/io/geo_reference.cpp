@@ -36,6 +36,7 @@ void check_north_up(const GeoRaster& raster, const GeoPlace& place) {
   const bool sheared = std::abs(t[2]) * raster.height > kMostShear * std::abs(t[1]) ||
                        std::abs(t[4]) * raster.width > kMostShear * std::abs(t[5]);
   if (!sheared && t[1] > 0 && t[5] != 0) return;
+  if (!sheared && (t[1] == 0 || t[5] == 0)) throw InputError("its texels have no size, expected metres");
   throw InputError(fmt::format("its rows are {}, expected rows from west to east: {}",
                                sheared ? "turned against the coordinates" : "mirrored",
                                metres_command(raster)));

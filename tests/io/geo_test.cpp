@@ -146,6 +146,8 @@ TEST_F(Geo, RowsThatGoNorthAreTurned) {
   write_vrt("turned.vrt", "<GeoTransform>400000,9,1,5200000,1,-9</GeoTransform>", "");
   EXPECT_THAT(refusal("turned.vrt"),
               AllOf(HasSubstr("turned against the coordinates"), HasSubstr("`gdalwarp ")));
+  write_vrt("none.vrt", "<GeoTransform>0,0,0,0,0,0</GeoTransform>", "");
+  EXPECT_THAT(refusal("none.vrt"), HasSubstr("its texels have no size"));
   write_vrt("mirrored.vrt", "<GeoTransform>400000,-10,0,5200000,0,-10</GeoTransform>", "");
   EXPECT_THAT(refusal("mirrored.vrt"), AllOf(HasSubstr("are mirrored"), HasSubstr("`gdalwarp ")));
 }
