@@ -1,7 +1,10 @@
 #include "bake/load.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "core/error.h"
 #include "io/file_context.h"
 #include "io/height_file.h"
 #include "io/image_io.h"
@@ -11,8 +14,20 @@
 namespace hemibake {
 namespace {
 
+void refuse_holes(const std::filesystem::path& path, const HeightFile& file) {
+  const auto first = std::ranges::find(file.holes.values, 1);
+  if (first == file.holes.values.end()) return;
+  const auto texel = first - file.holes.values.begin();
+  throw InputError(
+      fmt::format("{}: {} texels have no height (first at {},{}), expected heights everywhere, or "
+                  "--holes fill",
+                  path.string(), std::ranges::count(file.holes.values, 1), texel % file.holes.width,
+                  texel / file.holes.width));
+}
+
 Surface read_surface(const MapSettings& settings, double& lowest_m, std::optional<GeoPlace>& place) {
   HeightFile file = read_height_file(settings.map, settings.file);
+  refuse_holes(settings.map, file);
   place = file.place;
   Grid<float> heights = std::move(file.values);
   return with_file_context(settings.map, [&] {
@@ -23,7 +38,8 @@ Surface read_surface(const MapSettings& settings, double& lowest_m, std::optiona
 }
 
 void read_normals(const MapSettings& settings, NormalLength lengths, LoadedMap& map) {
-  const auto encoded = read_normal_map(settings.normal_map, map.surface.width(), map.surface.height());
+  const Grid<glm::vec3> encoded =
+      read_normal_map(settings.normal_map, map.surface.width(), map.surface.height()).values;
   map.surface.normals =
       with_file_context(settings.normal_map, [&] { return decode_normal_map(encoded, *settings.normal_y); });
   if (lengths == NormalLength::kStored) map.normal_lengths = normal_map_lengths(encoded);

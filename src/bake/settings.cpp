@@ -157,8 +157,9 @@ std::vector<Field> map_fields(MapSettings& s) {
               "encoding", "encoding", "Map", choice(s.file.encoding, {"none", "terrarium", "mapbox", "rg16"}),
               "heights split over channels of 8 bits: map tiles of Terrarium or Mapbox, or upper bits in "
               "red and lower in green [none]")),
-      when([&s] { return s.file.part != 0; }, recorded("part", "part", "Map", whole(s.file.part, 0, 65535),
-                                                       "of a file of several images, from 0")),
+      when([&s] { return s.file.part.has_value(); },
+           recorded("part", "part", "Map", whole(s.file.part, 0, 65535),
+                    "of a file of several images, from 0")),
       when([&s] { return s.file.window != ImageWindow::kDisplay; },
            recorded("window", "window", "Map", choice(s.file.window, {"display", "data"}),
                     "of an EXR: the one that is shown, or the one that has data [display]")),

@@ -37,7 +37,7 @@ class PublishedMarch : public testing::Test {
     for (const char* name : {"WallHeight.png", "WallNormal.png", "published_curves.csv"})
       if (!fs::exists(folder / name)) GTEST_SKIP() << folder / name << " is not there";
     heights_ = read_height_map(folder / "WallHeight.png");
-    encoded_normals_ = read_normal_map(folder / "WallNormal.png", heights_.width, heights_.height);
+    encoded_normals_ = read_normal_map(folder / "WallNormal.png", heights_.width, heights_.height).values;
     published_ = read_curves(folder / "published_curves.csv");
   }
 
