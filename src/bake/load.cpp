@@ -25,9 +25,10 @@ void refuse_holes(const std::filesystem::path& path, const HeightFile& file) {
                   texel / file.holes.width));
 }
 
-Surface read_surface(const MapSettings& settings, double& lowest_m) {
+Surface read_surface(const MapSettings& settings, double& lowest_m, std::optional<GeoPlace>& place) {
   HeightFile file = read_height_file(settings.map, settings.file);
   refuse_holes(settings.map, file);
+  place = file.place;
   Grid<float> heights = std::move(file.values);
   return with_file_context(settings.map, [&] {
     if (settings.filter.radius > 0) heights = bilateral_filter(heights, settings.filter, settings.edge);
@@ -55,7 +56,7 @@ MapHashes hash_files(const MapSettings& settings) {
 LoadedMap load_map(const MapSettings& settings, NormalLength lengths) {
   LoadedMap map;
   map.amplitude_m = settings.amplitude_m;
-  map.surface = read_surface(settings, map.lowest_m);
+  map.surface = read_surface(settings, map.lowest_m, map.place);
   if (settings.normals_from == NormalSource::kFaces)
     map.surface.normals = angle_weighted_normals(map.surface);
   if (settings.normals_from == NormalSource::kMap) read_normals(settings, lengths, map);

@@ -1,10 +1,12 @@
 // The map of a bake, read and made a surface.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "bake/settings.h"
 #include "core/grid.h"
+#include "io/height_file.h"
 #include "surface/surface.h"
 
 namespace hemibake {
@@ -21,6 +23,7 @@ struct LoadedMap {
   double amplitude_m = 0, lowest_m = 0;
   Grid<float> normal_lengths;  // as the normal map stores them; empty unless they are to be followed
   MapHashes sha256;
+  std::optional<GeoPlace> place;  // of the map on the earth
 };
 
 // Hashes the files of a map. Throws InputError where one cannot be read.

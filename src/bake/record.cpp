@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "io/geo_place.h"
 
 namespace hemibake {
 namespace {
@@ -98,16 +99,19 @@ std::filesystem::path find_input(const Provenance& provenance, const char* path_
   };
   const std::filesystem::path recorded = recorded_text(path_key);
   const std::string hash = recorded_text(hash_key);
-  const std::filesystem::path places[] = {recorded, bake_path.parent_path() / recorded,
+  // The second is of bakes before 0.3.0, which recorded the path as it was typed.
+  const std::filesystem::path places[] = {bake_path.parent_path() / recorded, recorded,
                                           bake_path.parent_path() / recorded.filename()};
+  std::filesystem::path other;
   for (const auto& place : places) {
     std::error_code not_there;
     if (!std::filesystem::is_regular_file(place, not_there)) continue;
-    if (sha256_of_file(place) != hash)
-      throw InputError(place.string() +
-                       ": not the file the bake was made from, expected its SHA-256 to be the same");
-    return place;
+    if (sha256_of_file(place) == hash) return place;
+    if (other.empty()) other = place;
   }
+  if (!other.empty())
+    throw InputError(other.string() +
+                     ": not the file the bake was made from, expected its SHA-256 to be the same");
   throw InputError(
       fmt::format("{}: the map of this bake is not there, expected it beside the bake or where it was",
                   recorded.string()));
@@ -119,6 +123,7 @@ Provenance record_of(const MapSettings& map_settings, const LoadedMap& map, cons
                      std::string_view command) {
   Provenance p = make_provenance(command);
   record_map(map_settings, map.sha256, p);
+  if (map.place) record_place(*map.place, p);
   p["texel_size_m"] = result.texel_size_m;
   BakeSettings settings = result.settings;
   record_fields(bake_fields(settings), p);

@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "io/bake_file.h"
 #include "io/file_context.h"
+#include "io/geo_place.h"
 #include "io/image_io.h"
 #include "io/output_file.h"
 #include "textures/make_textures.h"
@@ -38,6 +39,7 @@ struct TexturesOptions : BakeOptions {
 
 // Returns whether a file is a bake; any other is a height map.
 bool is_bake(const fs::path& path) {
+  if (is_geo_file(path)) return false;
   const ImageHeader header = read_image_header(path);
   if (!header.provenance.is_object()) return false;
   return std::ranges::any_of(header.channels, [](const std::string& channel) {

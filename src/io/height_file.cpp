@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "io/channel_survey.h"
+#include "io/geo_read.h"
 #include "io/height_sink.h"
 #include "io/image_reader.h"
 #include "io/npy_file.h"
@@ -299,6 +300,7 @@ HeightFile read_image(const fs::path& path, const HeightFileOptions& options) {
 
 HeightFile read_height_file(const fs::path& path, const HeightFileOptions& options) {
   // Formats with a place on the earth come first: some are TIFFs.
+  if (std::optional<HeightFile> terrain = read_geo_file(path, options)) return *std::move(terrain);
   std::error_code ignored;
   const bool is_file = fs::is_regular_file(path, ignored);
   if (is_file && (!options.raw.empty() || is_npy_file(path))) {

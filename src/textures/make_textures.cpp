@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/record.h"
+#include "io/geo_place.h"
+#include "io/geo_write.h"
 #include "io/output_file.h"
 #include "textures/bounce_map.h"
 #include "textures/layers.h"
@@ -28,6 +30,7 @@ bool holds_bounce(const TextureSettings& settings, TextureKind kind) {
 Provenance record_texture(const Provenance& of_bake, const Bake& bake, const TextureSettings& settings,
                           TextureKind kind) {
   Provenance p = of_bake;
+  for (const char* of_the_maker : {"input_path", "bake_input_path", "normals_path"}) p.erase(of_the_maker);
   record_texture_settings(settings, kind, p);
   p["holds"] = describe_texture(bake, settings, kind);
   p["encoding"] = holds_vectors(kind) ? "linear, 0..1 for -1..1" : "linear, 0..1";
@@ -70,6 +73,14 @@ ChannelRange range_of(const Layer& layer) {
   return range;
 }
 
+void write_one(OutputFile& file, const Bake& bake, const std::vector<Plane>& planes,
+               const TextureCoding& coding, const Grid<uint8_t>& holes, const Provenance& provenance) {
+  if (coding.format == TextureFormat::kTif)
+    if (const std::optional<GeoPlace> place = recorded_place(provenance))
+      return write_geo_tiff(file, bake.width, bake.height, planes, {*place, holes}, provenance);
+  write_texture(file, bake.width, bake.height, planes, coding, provenance);
+}
+
 }  // namespace
 
 void record_texture_settings(const TextureSettings& settings, TextureKind kind, Provenance& provenance) {
@@ -80,7 +91,8 @@ void record_texture_settings(const TextureSettings& settings, TextureKind kind, 
 
 std::vector<WrittenTexture> make_textures(const Bake& bake, const Provenance& provenance,
                                           const TextureSettings& settings,
-                                          const std::filesystem::path& folder, const std::string& name) {
+                                          const std::filesystem::path& folder, const std::string& name,
+                                          const Grid<uint8_t>& holes) {
   check_planes(bake, settings);
   const PackedInputs packed = read_packed_inputs(settings, bake.width, bake.height);
   const std::vector<std::filesystem::path> paths = texture_paths(settings, folder, name);
@@ -99,8 +111,8 @@ std::vector<WrittenTexture> make_textures(const Bake& bake, const Provenance& pr
       texture.channels.push_back(range_of(layer));
     }
     files.push_back(std::make_unique<OutputFile>(paths[t]));
-    write_texture(*files.back(), bake.width, bake.height, planes, settings.coding,
-                  record_texture(provenance, bake, settings, kind));
+    write_one(*files.back(), bake, planes, settings.coding, holes,
+              record_texture(provenance, bake, settings, kind));
     files.back()->finish();
     written.push_back(std::move(texture));
   }
