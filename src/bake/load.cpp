@@ -1,30 +1,76 @@
 #include "bake/load.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "bake/normal_reading.h"
+#include "core/error.h"
 #include "io/file_context.h"
-#include "io/height_file.h"
-#include "io/image_io.h"
 #include "io/provenance.h"
 #include "surface/normals.h"
 
 namespace hemibake {
 namespace {
 
-Surface read_surface(const MapSettings& settings, double& lowest_m) {
-  Grid<float> heights = read_height_file(settings.map, settings.file).values;
-  return with_file_context(settings.map, [&] {
-    if (settings.filter.radius > 0) heights = bilateral_filter(heights, settings.filter, settings.edge);
-    lowest_m = settings.amplitude_m * static_cast<double>(*std::ranges::min_element(heights.values));
-    return make_surface(std::move(heights), settings.size_m, settings.amplitude_m, settings.edge);
-  });
+// 8-bit values are this many steps.
+constexpr double kStepsOfBytes = 255;
+
+void append(std::vector<std::string>& warnings, std::vector<std::string> more) {
+  std::ranges::move(more, std::back_inserter(warnings));
 }
 
-void read_normals(const MapSettings& settings, NormalLength lengths, LoadedMap& map) {
-  const auto encoded = read_normal_map(settings.normal_map, map.surface.width(), map.surface.height());
-  map.surface.normals =
-      with_file_context(settings.normal_map, [&] { return decode_normal_map(encoded, *settings.normal_y); });
-  if (lengths == NormalLength::kStored) map.normal_lengths = normal_map_lengths(encoded);
+// Makes the surface; where values that stand out make it impossible, the error says so.
+Surface make_surface_or_name(Grid<float> heights, const MapSettings& settings,
+                             const std::vector<std::string>& outliers) {
+  try {
+    return make_surface(std::move(heights), *settings.size_m, *settings.amplitude_m, settings.edge);
+  } catch (const InputError& error) {
+    if (outliers.empty()) throw;
+    throw SettingError(std::string(error.what()) + "; " + outliers[0]);
+  }
+}
+
+// Makes the surface of a file's heights, with central-difference normals, and tells what was understood.
+// map.settings: as the user set them; resolved afterwards.
+void make_surface_of(HeightFile file, LoadedMap& map) {
+  MapSettings& settings = map.settings;
+  MapReading& reading = map.reading;
+  append(reading.warnings, picture_warnings(file, settings));
+  const std::vector<std::string> outliers =
+      outlier_warnings(file, file.full_scale == 1 || file.in_metres || file.place);
+  append(reading.warnings, outliers);
+  reading.units = resolve_units(file, settings);
+  const bool metres = settings.heights == HeightUnit::kMetres;
+  if (file.full_scale == kStepsOfBytes) reading.step_m = *settings.amplitude_m / (metres ? 1 : kStepsOfBytes);
+  if (!settings.texel_m.empty())
+    throw SettingError(fmt::format("texels of {:g} x {:g} m, expected square ones ({{texel}} X in metres)",
+                                   settings.texel_m[0], settings.texel_m[1]));
+  Grid<float> heights = std::exchange(file.values, {});
+  file.holes = {};
+  map.place = file.place;
+  reading.file = std::move(file);
+  if (settings.filter.radius > 0) heights = bilateral_filter(heights, settings.filter, settings.edge);
+  if (!metres) {
+    map.amplitude_m = *settings.amplitude_m;
+    map.lowest_m = map.amplitude_m * static_cast<double>(*std::ranges::min_element(heights.values));
+  }
+  map.surface = make_surface_or_name(std::move(heights), settings, outliers);
+  append(reading.warnings, surface_warnings(reading, settings, map.surface));
+}
+
+void take_normals(NormalLength lengths, LoadedMap& map) {
+  if (map.settings.normals_from == NormalSource::kFaces)
+    map.surface.normals = angle_weighted_normals(map.surface);
+  if (map.settings.normals_from != NormalSource::kMap) return;
+  ReadNormals read = read_normals(map.settings, map.surface);
+  map.surface.normals = std::move(read.normals);
+  if (lengths == NormalLength::kStored) map.normal_lengths = std::move(read.lengths);
+  map.reading.normals = std::move(read.reading);
+  for (const std::string& warning : read.warnings)
+    map.reading.warnings.push_back(map.settings.normal_map.string() + ": " + warning);
 }
 
 }  // namespace
@@ -37,11 +83,10 @@ MapHashes hash_files(const MapSettings& settings) {
 
 LoadedMap load_map(const MapSettings& settings, NormalLength lengths) {
   LoadedMap map;
-  map.amplitude_m = settings.amplitude_m;
-  map.surface = read_surface(settings, map.lowest_m);
-  if (settings.normals_from == NormalSource::kFaces)
-    map.surface.normals = angle_weighted_normals(map.surface);
-  if (settings.normals_from == NormalSource::kMap) read_normals(settings, lengths, map);
+  map.settings = settings;
+  HeightFile file = read_height_file(settings.map, settings.file);
+  with_file_context(settings.map, [&] { make_surface_of(std::move(file), map); });
+  take_normals(lengths, map);
   map.sha256 = hash_files(settings);
   return map;
 }

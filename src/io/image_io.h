@@ -49,8 +49,17 @@ void read_planes(const std::filesystem::path& path, int width, int height,
 //          (`G`), else the luminance (`Y`).
 Grid<float> read_height_map(const std::filesystem::path& path, const std::string& channel = "");
 
-// Reads the first three channels, 0..1. Throws InputError naming both sizes where it is not width × height.
-Grid<glm::vec3> read_normal_map(const std::filesystem::path& path, int width, int height);
+struct NormalImage {
+  Grid<glm::vec3> values;  // as stored: integers over the largest of their type, floats themselves
+  bool stored_as_integers = false;
+  std::vector<std::string> channels;  // the three taken: "R", "G", "B"
+};
+
+// Reads a normal map without decoding it: `normal.X`, `normal.Y`, `normal.Z` where it has them, as a bake
+// does, else the first three channels. Throws InputError naming both sizes where it is not width × height.
+// channels: two or three to take instead, each by name or index; of two the third value is 0.
+NormalImage read_normal_map(const std::filesystem::path& path, int width, int height,
+                            const std::vector<std::string>& channels = {});
 
 struct ColorImage {
   Grid<glm::vec3> colors;

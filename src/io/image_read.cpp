@@ -201,6 +201,24 @@ std::optional<int> choose_channel(const std::vector<std::string>& channels, cons
   return green ? green : find_channel(channels, "Y");
 }
 
+// Returns the index of the channel that `wanted` chooses.
+int require_channel(const Reader& reader, const std::string& wanted) {
+  const std::vector<std::string>& channels = reader.spec().channelnames;
+  const std::optional<int> chosen = choose_channel(channels, wanted);
+  if (!chosen)
+    reader.refuse_image(fmt::format("has {}, expected the name or index of one of its channels: {}",
+                                    wanted.empty() ? "no channel G" : fmt::format("no channel '{}'", wanted),
+                                    fmt::join(channels, ", ")));
+  return *chosen;
+}
+
+// Returns the indices of the channels that hold normals, as read_normal_map says.
+std::vector<int> normal_channels(const std::vector<std::string>& channels) {
+  const auto x = find_channel(channels, "normal.X"), y = find_channel(channels, "normal.Y"),
+             z = find_channel(channels, "normal.Z");
+  return x && y && z ? std::vector{*x, *y, *z} : std::vector{0, 1, 2};
+}
+
 // Returns what a TIFF of this program says, in the one text that the format has; null for any other.
 Provenance provenance_in_description(const OIIO::ImageSpec& spec) {
   const std::string text(spec.get_string_attribute("ImageDescription"));
@@ -241,32 +259,32 @@ void read_planes(const fs::path& path, int width, int height, std::span<const Mu
 Grid<float> read_height_map(const fs::path& path, const std::string& channel) {
   Reader reader(path);
   const OIIO::ImageSpec& spec = reader.spec();
-  const std::optional<int> chosen = choose_channel(spec.channelnames, channel);
-  if (!chosen)
-    reader.refuse_image(
-        fmt::format("has {}, expected the name or index of one of its channels: {}",
-                    channel.empty() ? "no channel G" : fmt::format("no channel '{}'", channel),
-                    fmt::join(spec.channelnames, ", ")));
+  const int chosen = require_channel(reader, channel);
   Grid<float> heights(spec.width, spec.height);
-  const MutablePlane plane{spec.channelnames[static_cast<size_t>(*chosen)], heights.values.data()};
-  reader.read({&plane, 1}, {&*chosen, 1});
+  const MutablePlane plane{spec.channelnames[static_cast<size_t>(chosen)], heights.values.data()};
+  reader.read({&plane, 1}, {&chosen, 1});
   return heights;
 }
 
-Grid<glm::vec3> read_normal_map(const fs::path& path, int width, int height) {
+NormalImage read_normal_map(const fs::path& path, int width, int height,
+                            const std::vector<std::string>& channels) {
   Reader reader(path);
   const OIIO::ImageSpec& spec = reader.spec();
   if (spec.width != width || spec.height != height)
     reader.refuse_image(fmt::format("is {} x {} texels, expected {} x {} as the height map is", spec.width,
                                     spec.height, width, height));
-  if (spec.nchannels < 3)
+  if (channels.empty() && spec.nchannels < 3)
     reader.refuse_image(fmt::format("has {} channel(s), expected the three of a normal map", spec.nchannels));
-  Grid<glm::vec3> normals(width, height);
+  NormalImage image{Grid<glm::vec3>(width, height, glm::vec3(0)), !spec.format.is_floating_point(), {}};
+  std::vector<int> indices = channels.empty() ? normal_channels(spec.channelnames) : std::vector<int>();
+  for (const std::string& channel : channels) indices.push_back(require_channel(reader, channel));
   std::vector<MutablePlane> planes;
-  for (int c = 0; c < 3; ++c)
-    planes.push_back({spec.channelnames[static_cast<size_t>(c)], &normals.values[0][c], 3});
-  reader.read(planes, std::vector<int>{0, 1, 2});
-  return normals;
+  for (size_t c = 0; c < indices.size(); ++c) {
+    image.channels.push_back(spec.channelnames[static_cast<size_t>(indices[c])]);
+    planes.push_back({image.channels.back(), &image.values.values[0][static_cast<int>(c)], 3});
+  }
+  reader.read(planes, indices);
+  return image;
 }
 
 ColorImage read_color_image(const fs::path& path) {

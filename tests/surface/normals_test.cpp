@@ -91,13 +91,13 @@ Grid<glm::vec3> encoded(glm::dvec3 normal) { return Grid<glm::vec3>(1, 1, glm::v
 
 TEST(DecodeNormalMap, TakesGreenAsTold) {
   const glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, 0.4, 0.8));
-  expect_near(decode_normal_map(encoded(normal), NormalY::kDown)[0], normal, kFloatRounding);
-  expect_near(decode_normal_map(encoded(normal), NormalY::kUp)[0], {normal.x, -normal.y, normal.z},
+  expect_near(decode_normal_map(encoded(normal), {.y = NormalY::kDown})[0], normal, kFloatRounding);
+  expect_near(decode_normal_map(encoded(normal), {.y = NormalY::kUp})[0], {normal.x, -normal.y, normal.z},
               kFloatRounding);
 }
 
 TEST(DecodeNormalMap, MakesUnitLength) {
-  expect_near(decode_normal_map(encoded({0.1, 0.0, 0.2}), NormalY::kDown)[0],
+  expect_near(decode_normal_map(encoded({0.1, 0.0, 0.2}), {.y = NormalY::kDown})[0],
               glm::normalize(glm::dvec3(0.1, 0, 0.2)), 10 * kFloatRounding);
 }
 
@@ -110,7 +110,7 @@ TEST(DecodeNormalMap, RefusesWhatIsNoNormalAndNamesTheTexel) {
     Grid<glm::vec3> map(3, 2, glm::vec3(0.5f, 0.5f, 1));
     map(2, 1) = bad;
     try {
-      decode_normal_map(map, NormalY::kUp);
+      decode_normal_map(map, {.y = NormalY::kUp});
       ADD_FAILURE() << "accepted " << bad.x << ", " << bad.y << ", " << bad.z;
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr("texel 2,1"));

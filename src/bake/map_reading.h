@@ -1,0 +1,53 @@
+// What a map was understood as, and what makes that doubtful.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/height_units.h"
+#include "bake/settings.h"
+#include "core/grid.h"
+#include "io/height_file.h"
+#include "surface/normals.h"
+#include "surface/surface.h"
+
+namespace hemibake {
+
+// Source of what is known about the green channel of a normal map.
+enum class NormalYSource { kSaid, kFile, kHeights };
+
+// What a normal map was understood as.
+struct NormalReading {
+  std::vector<std::string> channels;
+  NormalEncoding encoding = NormalEncoding::kLinear;
+  NormalY y = NormalY::kUp;
+  NormalYSource y_from = NormalYSource::kSaid;
+  double mean_length = 1;    // of the vectors as stored
+  SlopeAgreement agreement;  // with the slopes of the heights
+};
+
+// What a map was understood as. Settings are named in braces in the warnings, as in SettingError.
+struct MapReading {
+  HeightFile file;  // without its values and holes
+  HeightUnits units;
+  size_t holes = 0;                      // texels that had no height
+  std::optional<NormalReading> normals;  // of a normal map
+  double step_m = 0;                     // height of one step of 8-bit values; 0: there are more bits
+  std::vector<std::string> warnings;
+};
+
+// Returns warnings about values that stand out: more than ten times the range of all others away from them.
+// file: as read, holes apart. any_share: also where many texels have the value, as −9999 in terrain.
+std::vector<std::string> outlier_warnings(const HeightFile& file, bool any_share);
+
+// Returns warnings about a surface that can hardly be meant: flat, nearly flat, steeper than 85° in half of
+// its texels. `surface` has central-difference normals.
+std::vector<std::string> surface_warnings(const MapReading& reading, const MapSettings& settings,
+                                          const Surface& surface);
+
+// Returns a warning where a file is a colour picture or a normal map, by the statistics of its first three
+// channels; none where the settings say which channel is the height.
+std::vector<std::string> picture_warnings(const HeightFile& file, const MapSettings& settings);
+
+}  // namespace hemibake
