@@ -83,7 +83,7 @@ void resolve_texel(const HeightFile& file, MapSettings& settings, HeightUnits& u
     throw SettingError(
         "texels are degrees, expected metres: reproject first (gdalwarp -t_srs EPSG:CODE -r bilinear), or "
         "say "
-        "{texel} X,Y in metres");
+        "{texel-size} X,Y in metres");
   units.texel_overrides_file = says && file.place;
   units.texel_from_file = !says && has_place;
   const double aspect = file.pixel_aspect;

@@ -46,7 +46,7 @@ void make_surface_of(HeightFile file, LoadedMap& map) {
   const bool metres = settings.heights == HeightUnit::kMetres;
   if (file.full_scale == kStepsOfBytes) reading.step_m = *settings.amplitude_m / (metres ? 1 : kStepsOfBytes);
   if (!settings.texel_m.empty())
-    throw SettingError(fmt::format("texels of {:g} x {:g} m, expected square ones ({{texel}} X in metres)",
+    throw SettingError(fmt::format("texels of {:g} x {:g} m, expected square ones ({{texel-size}} X in metres)",
                                    settings.texel_m[0], settings.texel_m[1]));
   Grid<float> heights = std::exchange(file.values, {});
   file.holes = {};

@@ -140,7 +140,7 @@ std::vector<std::string> surface_warnings(const MapReading& reading, const MapSe
     return {fmt::format(
         "half of the texels are steeper than {:.1f} degrees: heights range over {:.4g} m, texels are {:.3g} "
         "m "
-        "wide, expected {{size}} or {{texel}} in metres{}",
+        "wide, expected {{size}} or {{texel-size}} in metres{}",
         slope, range_m, units.texel_x_m,
         metres ? ", or {heights} unit where values are no metres" : ", or a smaller {amplitude}")};
   return {};
