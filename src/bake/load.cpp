@@ -38,7 +38,6 @@ Surface make_surface_or_name(Grid<float> heights, const MapSettings& settings,
 void make_surface_of(HeightFile file, LoadedMap& map) {
   MapSettings& settings = map.settings;
   MapReading& reading = map.reading;
-  append(reading.warnings, picture_warnings(file, settings));
   const std::vector<std::string> outliers =
       outlier_warnings(file, file.full_scale == 1 || file.in_metres || file.place);
   append(reading.warnings, outliers);
@@ -46,8 +45,9 @@ void make_surface_of(HeightFile file, LoadedMap& map) {
   const bool metres = settings.heights == HeightUnit::kMetres;
   if (file.full_scale == kStepsOfBytes) reading.step_m = *settings.amplitude_m / (metres ? 1 : kStepsOfBytes);
   if (!settings.texel_m.empty())
-    throw SettingError(fmt::format("texels of {:g} x {:g} m, expected square ones ({{texel-size}} X in metres)",
-                                   settings.texel_m[0], settings.texel_m[1]));
+    throw SettingError(
+        fmt::format("texels of {:g} x {:g} m, expected square ones ({{texel-size}} X in metres)",
+                    settings.texel_m[0], settings.texel_m[1]));
   Grid<float> heights = std::exchange(file.values, {});
   file.holes = {};
   map.place = file.place;

@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/geometric.hpp>
 
 #include "core/constants.h"
-#include "io/image_io.h"
 
 namespace hemibake {
 namespace {
@@ -21,9 +19,6 @@ constexpr double kTailShare = 0.005;
 constexpr double kLoneShare = 0.001;
 constexpr double kFlatRangeOverSize = 1e-5;
 constexpr double kSteepestMedianDegrees = 85;
-// Mean spread of the channels from which a picture has colours, and mean error of length within which colours
-// are normals.
-constexpr double kColorSpread = 0.02, kNormalLengthError = 0.1;
 
 // Values at one end of all, and what is next to them.
 struct Extreme {
@@ -144,31 +139,6 @@ std::vector<std::string> surface_warnings(const MapReading& reading, const MapSe
         slope, range_m, units.texel_x_m,
         metres ? ", or {heights} unit where values are no metres" : ", or a smaller {amplitude}")};
   return {};
-}
-
-std::vector<std::string> picture_warnings(const HeightFile& file, const MapSettings& settings) {
-  const bool is_said = !settings.file.channel.empty() || settings.file.encoding != SplitEncoding::kNone;
-  const auto has = [&](const char* name) {
-    return std::ranges::find(file.channels, name) != file.channels.end();
-  };
-  if (is_said || file.in_metres || file.place || !(has("R") && has("G") && has("B"))) return {};
-  const Grid<glm::vec3> colors = read_color_image(settings.map).colors;
-  double spread = 0, length_error = 0, z = 0;
-  for (const glm::vec3& color : colors.values) {
-    const glm::dvec3 c(color);
-    spread += std::max({c.x, c.y, c.z}) - std::min({c.x, c.y, c.z});
-    length_error += std::abs(glm::length(2.0 * c - 1.0) - 1);
-    z += 2 * c.z - 1;
-  }
-  const auto count = static_cast<double>(colors.size());
-  if (spread <= kColorSpread * count) return {};
-  if (length_error < kNormalLengthError * count && z > 0.5 * count)
-    return {fmt::format("looks like a normal map, but {} was taken for the height: expected a height map",
-                        file.channel)};
-  return {fmt::format(
-      "R, G and B differ as in a colour picture, and {} was taken for the height: expected a height map, or "
-      "{{channel}} or {{encoding}} to say where the height is",
-      file.channel)};
 }
 
 }  // namespace hemibake

@@ -46,8 +46,4 @@ std::vector<std::string> outlier_warnings(const HeightFile& file, bool any_share
 std::vector<std::string> surface_warnings(const MapReading& reading, const MapSettings& settings,
                                           const Surface& surface);
 
-// Returns a warning where a file is a colour picture or a normal map, by the statistics of its first three
-// channels; none where the settings say which channel is the height.
-std::vector<std::string> picture_warnings(const HeightFile& file, const MapSettings& settings);
-
 }  // namespace hemibake

@@ -144,8 +144,9 @@ std::vector<Field> file_fields(MapSettings& s) {
               "encoding", "encoding", "Map", choice(s.file.encoding, {"none", "terrarium", "mapbox", "rg16"}),
               "heights split over channels of 8 bits: map tiles of Terrarium or Mapbox, or upper bits in "
               "red and lower in green [none]")),
-      when([&s] { return s.file.part != 0; }, recorded("part", "part", "Map", whole(s.file.part, 0, 65535),
-                                                       "of a file of several images, from 0")),
+      when([&s] { return s.file.part.has_value(); },
+           recorded("part", "part", "Map", whole(s.file.part, 0, 65535),
+                    "of a file of several images, from 0")),
       when([&s] { return s.file.window != ImageWindow::kDisplay; },
            recorded("window", "window", "Map", choice(s.file.window, {"display", "data"}),
                     "of an EXR: the one that is shown, or the one that has data [display]")),
@@ -181,10 +182,10 @@ std::vector<Field> unit_fields(MapSettings& s) {
           when([&s] { return s.low_m.has_value(); },
                recorded("low", "low_m", "Surface", number(s.low_m, -kLargestLengthM / 2, kLargestLengthM / 2),
                         "height of map value 0 (black), m, with --high; default: 0"))),
-      with_default(
-          when([&s] { return s.high_m.has_value(); },
-               recorded("high", "high_m", "Surface", number(s.high_m, -kLargestLengthM / 2, kLargestLengthM / 2),
-                        "height of map value 1 (white), m, instead of --amplitude; may be the lower one"))),
+      with_default(when(
+          [&s] { return s.high_m.has_value(); },
+          recorded("high", "high_m", "Surface", number(s.high_m, -kLargestLengthM / 2, kLargestLengthM / 2),
+                   "height of map value 1 (white), m, instead of --amplitude; may be the lower one"))),
       with_default(when(
           [&s] { return s.heights.has_value(); },
           recorded("heights", "heights", "Surface", choice(s.heights, {"metres", "unit"}),
