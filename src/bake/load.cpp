@@ -48,6 +48,9 @@ void make_surface_of(HeightFile file, LoadedMap& map) {
     throw SettingError(
         fmt::format("texels of {:g} x {:g} m, expected square ones ({{texel-size}} X in metres)",
                     settings.texel_m[0], settings.texel_m[1]));
+  reading.holes = static_cast<size_t>(std::ranges::count(file.holes.values, uint8_t{1}));
+  if (reading.holes > 0)
+    throw InputError(fmt::format("{} texels have no height, expected one in every texel", reading.holes));
   Grid<float> heights = std::exchange(file.values, {});
   file.holes = {};
   map.place = file.place;
