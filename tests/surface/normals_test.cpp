@@ -118,5 +118,43 @@ TEST(DecodeNormalMap, RefusesWhatIsNoNormalAndNamesTheTexel) {
   }
 }
 
+TEST(DecodeNormalMap, TakesSignedNormalsOfUnitLengthBitForBit) {
+  const glm::vec3 normal(glm::normalize(glm::dvec3(0.3, -0.4, 0.8)));
+  EXPECT_EQ(decode_normal_map(Grid<glm::vec3>(1, 1, normal), {.encoding = NormalEncoding::kSigned})[0],
+            normal);
+  expect_near(
+      decode_normal_map(Grid<glm::vec3>(1, 1, 3.0f * normal), {.encoding = NormalEncoding::kSigned})[0],
+      normal, kFloatRounding);
+}
+
+TEST(DecodeNormalMap, MakesZAndUndoesSigns) {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, -0.4, 0.8));
+  Grid<glm::vec3> two = encoded({-normal.x, normal.y, -1});
+  expect_near(decode_normal_map(two, {.negated = {true, false, false}, .has_z = false})[0], normal,
+              10 * kFloatRounding);
+  // Codecs of two channels leave vectors a little too long.
+  const glm::vec3 flat = decode_normal_map(encoded({0.8, 0.65, 0}), {.has_z = false})[0];
+  EXPECT_GT(flat.z, 0);
+}
+
+TEST(CompareSlopes, IsOneForTheSameAndMinusOneForTheOtherSign) {
+  const Surface bumps =
+      surface_of(16, 12, Edge::kWrap, [](int x, int y) { return std::sin(x * 0.7) + std::cos(y * 1.3 + x); });
+  Grid<glm::vec3> flipped = bumps.normals;
+  for (glm::vec3& n : flipped.values) n.y = -n.y;
+  const SlopeAgreement same = compare_slopes(bumps.normals, bumps.normals);
+  EXPECT_NEAR(*same.x, 1, 1e-12);
+  EXPECT_NEAR(*same.y, 1, 1e-12);
+  EXPECT_NEAR(*same.slope_ratio, 1, 1e-12);
+  EXPECT_NEAR(*compare_slopes(flipped, bumps.normals).y, -1, 1e-12);
+  // Slopes three times as large are three times as large, however steep.
+  Grid<glm::vec3> steeper = bumps.normals;
+  for (glm::vec3& n : steeper.values) n = glm::normalize(glm::vec3(3 * n.x, 3 * n.y, n.z));
+  EXPECT_NEAR(*compare_slopes(steeper, bumps.normals).slope_ratio, 3, 1e-5);
+  const SlopeAgreement flat = compare_slopes(Grid<glm::vec3>(16, 12, glm::vec3(0, 0, 1)), bumps.normals);
+  EXPECT_FALSE(flat.x || flat.y);
+  EXPECT_EQ(*flat.slope_ratio, 0);
+}
+
 }  // namespace
 }  // namespace hemibake
