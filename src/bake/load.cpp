@@ -38,8 +38,7 @@ Surface make_surface_or_name(Grid<float> heights, const MapSettings& settings,
 void make_surface_of(HeightFile file, LoadedMap& map) {
   MapSettings& settings = map.settings;
   MapReading& reading = map.reading;
-  const std::vector<std::string> outliers =
-      outlier_warnings(file, file.full_scale == 1 || file.in_metres || file.place);
+  const std::vector<std::string> outliers = outlier_warnings(file, settings.heights == HeightUnit::kMetres);
   append(reading.warnings, outliers);
   reading.units = resolve_units(file, settings);
   const bool metres = settings.heights == HeightUnit::kMetres;
@@ -49,8 +48,13 @@ void make_surface_of(HeightFile file, LoadedMap& map) {
         fmt::format("texels of {:g} x {:g} m, expected square ones ({{texel-size}} X in metres)",
                     settings.texel_m[0], settings.texel_m[1]));
   reading.holes = static_cast<size_t>(std::ranges::count(file.holes.values, uint8_t{1}));
-  if (reading.holes > 0)
-    throw InputError(fmt::format("{} texels have no height, expected one in every texel", reading.holes));
+  if (reading.holes > 0) {
+    const auto first =
+        static_cast<int>(std::ranges::find(file.holes.values, uint8_t{1}) - file.holes.values.begin());
+    throw InputError(
+        fmt::format("texel {},{} and {} others have no height, expected a finite one in every texel",
+                    first % file.holes.width, first / file.holes.width, reading.holes - 1));
+  }
   Grid<float> heights = std::exchange(file.values, {});
   file.holes = {};
   map.place = file.place;

@@ -15,7 +15,7 @@ namespace {
 constexpr double kOutlierRanges = 10;
 // Share of the values beyond each end of the range of the others.
 constexpr double kTailShare = 0.005;
-// Integers of 0..1 often have a floor of black and a ceiling of white; fewer texels than this share have not.
+// Share of the texels up to which a value of 0..1 is one of few.
 constexpr double kLoneShare = 0.001;
 constexpr double kFlatRangeOverSize = 1e-5;
 constexpr double kSteepestMedianDegrees = 85;
@@ -60,8 +60,7 @@ std::string outlier_warning(const HeightFile& file, size_t count, double value, 
   const std::string text = stored_text(file, value);
   return fmt::format(
       "{} {} {}, {:.3g} times the range of all others away from them: expected {{nodata}} {} if that stands "
-      "for "
-      "no height",
+      "for no height",
       count, count == 1 ? "texel is" : "texels are about", text, ranges, text);
 }
 
@@ -99,13 +98,14 @@ double median_slope_degrees(const Grid<glm::vec3>& normals) {
 
 }  // namespace
 
-std::vector<std::string> outlier_warnings(const HeightFile& file, bool any_share) {
+std::vector<std::string> outlier_warnings(const HeightFile& file, bool said_metres) {
   std::vector<std::string> warnings;
   std::vector<float> values;
   values.reserve(file.values.size());
   for (size_t i = 0; i < file.values.size(); ++i)
     if (file.holes.empty() || !file.holes[i]) values.push_back(file.values[i]);
   if (values.empty() || std::ranges::min(values) == std::ranges::max(values)) return warnings;
+  const bool any_share = said_metres || file.full_scale == 1 || file.place || std::ranges::min(values) < 0;
   const bool low_stands_out = warn_of_extreme(file, values, -1, any_share, warnings);
   const bool high_stands_out = warn_of_extreme(file, values, 1, any_share, warnings);
   const double low = quantile(values, kTailShare), high = quantile(values, 1 - kTailShare);
@@ -130,13 +130,12 @@ std::vector<std::string> surface_warnings(const MapReading& reading, const MapSe
     return {fmt::format("heights range over {:.3g} m only, on a map of {:g} m: expected another {}{{size}}",
                         range_m, *settings.size_m,
                         metres ? "" : "{amplitude}, {heights} metres where values are metres, or ")};
-  const double slope = median_slope_degrees(surface.normals);
-  if (slope > kSteepestMedianDegrees)
+  if (median_slope_degrees(surface.normals) > kSteepestMedianDegrees)
     return {fmt::format(
-        "half of the texels are steeper than {:.1f} degrees: heights range over {:.4g} m, texels are {:.3g} "
+        "half of the texels are steeper than {:g} degrees: heights range over {:.4g} m, texels are {:.3g} "
         "m "
         "wide, expected {{size}} or {{texel-size}} in metres{}",
-        slope, range_m, units.texel_x_m,
+        kSteepestMedianDegrees, range_m, units.texel_x_m,
         metres ? ", or {heights} unit where values are no metres" : ", or a smaller {amplitude}")};
   return {};
 }

@@ -38,8 +38,10 @@ struct MapReading {
 };
 
 // Returns warnings about values that stand out: more than ten times the range of all others away from them.
-// file: as read, holes apart. any_share: also where many texels have the value, as −9999 in terrain.
-std::vector<std::string> outlier_warnings(const HeightFile& file, bool any_share);
+// Integers of 0..1 often have a floor of black and a ceiling of white: there only few texels count, elsewhere
+// any number of one value, as −9999 in terrain. file: as read, holes apart. said_metres: although its
+// integers are over their range.
+std::vector<std::string> outlier_warnings(const HeightFile& file, bool said_metres);
 
 // Returns warnings about a surface that can hardly be meant: flat, nearly flat, steeper than 85° in half of
 // its texels. `surface` has central-difference normals.

@@ -103,18 +103,19 @@ TEST_F(Understood, IsSaidInTextAndJson) {
 
 TEST_F(Understood, MetresAreMetresWhateverTheirBitDepth) {
   write_unit_map();
-  const auto metres = [](int x, int y) { return std::vector<double>{std::round(400 * relief(x, y) - 50)}; };
+  const auto metres = [](int x, int y) { return std::vector<double>{std::round(4000 * relief(x, y) - 500)}; };
   write<float>("float.exr", {"Y"}, metres);
   write<int16_t>("int.tif", {"Y"}, metres);
-  write<uint16_t>("uint.png", {"Y"},
-                  [](int x, int y) { return std::vector<double>{std::round(400 * relief(x, y) - 50) + 50}; });
-  const Grid<float> expected = ao("unit.exr --amplitude 400 --size 960");
+  write<uint16_t>("uint.png", {"Y"}, [](int x, int y) {
+    return std::vector<double>{std::round(4000 * relief(x, y) - 500) + 500};
+  });
+  const Grid<float> expected = ao("unit.exr --amplitude 4000 --size 9600");
   for (const char* map : {"float.exr", "float.exr --amplitude 1", "int.tif", "int.tif --amplitude 1",
                           "uint.png --heights metres", "float.exr --heights metres"})
-    expect_near_ao(fmt::format("{} --size 960", map), expected, 2e-3);
-  expect_near_ao("int.tif --texel-size 30", expected, 2e-3);
-  EXPECT_EQ(map_of("int.tif --size 960").at("heights"), "metres");
-  EXPECT_EQ(map_of("float.exr --size 960").at("heights_because"), "floats that range over more than 2");
+    expect_near_ao(fmt::format("{} --size 9600", map), expected, 2e-3);
+  expect_near_ao("int.tif --texel-size 300", expected, 2e-3);
+  EXPECT_EQ(map_of("int.tif --size 9600").at("heights"), "metres");
+  EXPECT_EQ(map_of("float.exr --size 9600").at("heights_because"), "floats that range over more than 2");
 }
 
 TEST_F(Understood, AnAmplitudeOfFloatsScalesThemAndMetresTakeNone) {
