@@ -8,7 +8,6 @@
 #include <iterator>
 #include <map>
 
-#include "bake/load.h"
 #include "bake/record.h"
 #include "cli/print/warnings.h"
 #include "core/error.h"
@@ -113,9 +112,9 @@ void refuse_settings_of_one_map(const Invocation& invocation, std::initializer_l
       throw InputError(fmt::format("--{}: is of one map, expected one map with it", name));
 }
 
-Provenance wanted_record(const MapSettings& map, const BakeSettings& settings) {
+Provenance wanted_record(const LoadedMap& map, const BakeSettings& settings) {
   Provenance wanted = make_provenance("");
-  record_map(map, hash_files(map), wanted);
+  record_map(map.settings, map.sha256, wanted);
   BakeSettings copy = settings;
   record_fields(bake_fields(copy), wanted);
   for (const char* elsewhere : {"command", "input_path", "normals_path"}) wanted.erase(elsewhere);

@@ -57,9 +57,11 @@ struct NormalImage {
 };
 
 // Reads a normal map without decoding it: `normal.X`, `normal.Y`, `normal.Z` where it has them, as a bake
-// does, else the first three channels. Throws InputError naming both sizes where it is not width × height,
-// and where it is stored turned: which way its vectors point is open then.
-NormalImage read_normal_map(const std::filesystem::path& path, int width, int height);
+// does, else the first three channels. Throws InputError naming both sizes where it is not width × height, and
+// where it is stored turned: which way its vectors point is open then.
+// channels: two or three to take instead, each by name or index; of two the third value is 0.
+NormalImage read_normal_map(const std::filesystem::path& path, int width, int height,
+                            const std::vector<std::string>& channels = {});
 
 struct ColorImage {
   Grid<glm::vec3> colors;

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 
 #include "io/image_io.h"
 #include "io/image_reader.h"
@@ -20,10 +19,10 @@ void check_size(const ImageReader& reader, int width, int height, const char* li
 }
 
 // Returns the indices of the channels that hold normals, as read_normal_map says.
-std::array<int, 3> normal_channels(const std::vector<std::string>& channels) {
+std::vector<int> normal_channels(const std::vector<std::string>& channels) {
   const auto x = find_channel(channels, "normal.X"), y = find_channel(channels, "normal.Y"),
              z = find_channel(channels, "normal.Z");
-  return x && y && z ? std::array{*x, *y, *z} : std::array{0, 1, 2};
+  return x && y && z ? std::vector{*x, *y, *z} : std::vector{0, 1, 2};
 }
 
 // Returns what a TIFF of this program says, in the one text that the format has; null for any other.
@@ -70,11 +69,12 @@ Grid<float> read_height_map(const fs::path& path, const std::string& channel) {
   return heights;
 }
 
-NormalImage read_normal_map(const fs::path& path, int width, int height) {
+NormalImage read_normal_map(const fs::path& path, int width, int height,
+                            const std::vector<std::string>& channels) {
   ImageReader reader(path);
   const ChannelFacts& facts = reader.facts();
   check_size(reader, width, height, " as the height map is");
-  if (facts.channels.size() < 3)
+  if (channels.empty() && facts.channels.size() < 3)
     reader.refuse(
         fmt::format("has {} channel(s), expected the three of a normal map", facts.channels.size()));
   if (facts.orientation != 1)
@@ -82,12 +82,18 @@ NormalImage read_normal_map(const fs::path& path, int width, int height) {
         fmt::format("is stored turned (orientation {}), which leaves the directions of its normals "
                     "open, expected a normal map saved upright",
                     facts.orientation));
-  NormalImage image{Grid<glm::vec3>(width, height), !reader.spec().format.is_floating_point(), {}};
-  const std::array<int, 3> indices = normal_channels(facts.channels);
+  NormalImage image{
+      Grid<glm::vec3>(width, height, glm::vec3(0)), !reader.spec().format.is_floating_point(), {}};
+  std::vector<int> indices = channels.empty() ? normal_channels(facts.channels) : std::vector<int>();
+  for (const std::string& channel : channels) {
+    const std::optional<int> chosen = choose_channel(facts, channel);
+    if (!chosen) refuse_channel(reader, channel);
+    indices.push_back(*chosen);
+  }
   std::vector<MutablePlane> planes;
-  for (int c = 0; c < 3; ++c) {
-    image.channels.push_back(facts.channels[static_cast<size_t>(indices[static_cast<size_t>(c)])]);
-    planes.push_back({image.channels.back(), &image.values.values[0][c], 3});
+  for (size_t c = 0; c < indices.size(); ++c) {
+    image.channels.push_back(facts.channels[static_cast<size_t>(indices[c])]);
+    planes.push_back({image.channels.back(), &image.values.values[0][static_cast<int>(c)], 3});
   }
   reader.fill(planes, indices);
   return image;
