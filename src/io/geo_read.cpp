@@ -193,7 +193,7 @@ std::optional<HeightFile> read_dataset(const fs::path& path, const HeightFileOpt
 }  // namespace
 
 std::optional<HeightFile> read_geo_file(const fs::path& path, const HeightFileOptions& options) {
-  if (!options.raw.empty() || options.encoding != SplitEncoding::kNone || options.part != 0)
+  if (!options.raw.empty() || options.encoding != SplitEncoding::kNone || options.part.value_or(0) != 0)
     return std::nullopt;
   if (!is_geo_file(path)) return std::nullopt;
   return with_file_context(path, [&] { return read_dataset(path, options); });
