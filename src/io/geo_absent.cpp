@@ -9,7 +9,7 @@
 namespace hemibake {
 
 std::optional<HeightFile> read_geo_file(const std::filesystem::path& path, const HeightFileOptions& options) {
-  if (!options.raw.empty() || options.encoding != SplitEncoding::kNone || options.part != 0)
+  if (!options.raw.empty() || options.encoding != SplitEncoding::kNone || options.part.value_or(0) != 0)
     return std::nullopt;
   if (!is_geo_file(path)) return std::nullopt;
   throw InputError(fmt::format(
