@@ -96,14 +96,15 @@ HorizonTracer::Path HorizonTracer::make_path(double azimuth) const {
   append_crossings(path.x, path.y, longest_, crossings);
   const double step = kPieceTexels / std::max(std::abs(path.x), std::abs(path.y));
   for (size_t i = 0; i < crossings.size();) {
-    const double near = step * std::floor(crossings[i].distance / step), far = near + step;
+    const auto number_of = [&](const EdgeCrossing& c) { return std::floor(c.distance / step); };
+    const double number = number_of(crossings[i]), near = step * number, far = near + step;
     // A crossing at the end of a piece by rounding has its vertices one texel out at most.
     const auto corner = [&](double direction) {
       return static_cast<int>(std::floor((direction < 0 ? far : near) * direction - kOnTexel)) - 1;
     };
     const Window window{corner(path.x), corner(path.y), crossings[i].distance, far};
     Piece piece{window, static_cast<uint32_t>(path.crossings.size()), 0};
-    for (; i < crossings.size() && crossings[i].distance < far; ++i) {
+    for (; i < crossings.size() && number_of(crossings[i]) == number; ++i) {
       const EdgeCrossing& c = crossings[i];
       const int pitch = heights_.width, a = (c.y - window.corner_y) * pitch + c.x - window.corner_x;
       const int b = c.fraction > 0 ? a + c.edge_y * pitch + c.edge_x : a;

@@ -218,7 +218,9 @@ std::vector<RayRecord> EmbreeTracer::replay_texel(uint32_t texel) const {
     const glm::vec3 direction = frame.world_from_tangent(ray.local);
     SurfaceHit hit;
     RayRecord record{glm::dvec3(direction), ray.cosine_weight, ray.uniform_weight, false, 0, {}, 0, 0};
-    if (scene_->follow(start, direction, kNoFacet, &hit) == RayOutcome::kHit) {
+    const RayOutcome outcome = scene_->follow(start, direction, kNoFacet, &hit);
+    if (outcome == RayOutcome::kGround) continue;  // neither sky nor a facet
+    if (outcome == RayOutcome::kHit) {
       record.hit = true;
       record.facet = hit.facet;
       record.hit_texel = facet_point_texels(surface_, hit.facet, {hit.u, hit.v});
