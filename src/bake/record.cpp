@@ -98,16 +98,19 @@ std::filesystem::path find_input(const Provenance& provenance, const char* path_
   };
   const std::filesystem::path recorded = recorded_text(path_key);
   const std::string hash = recorded_text(hash_key);
-  const std::filesystem::path places[] = {recorded, bake_path.parent_path() / recorded,
+  // The second is of bakes before 0.3.0, which recorded the path as it was typed.
+  const std::filesystem::path places[] = {bake_path.parent_path() / recorded, recorded,
                                           bake_path.parent_path() / recorded.filename()};
+  std::filesystem::path other;
   for (const auto& place : places) {
     std::error_code not_there;
     if (!std::filesystem::is_regular_file(place, not_there)) continue;
-    if (sha256_of_file(place) != hash)
-      throw InputError(place.string() +
-                       ": not the file the bake was made from, expected its SHA-256 to be the same");
-    return place;
+    if (sha256_of_file(place) == hash) return place;
+    if (other.empty()) other = place;
   }
+  if (!other.empty())
+    throw InputError(other.string() +
+                     ": not the file the bake was made from, expected its SHA-256 to be the same");
   throw InputError(
       fmt::format("{}: the map of this bake is not there, expected it beside the bake or where it was",
                   recorded.string()));

@@ -14,6 +14,22 @@ std::vector<float> irradiance_of(const std::vector<float>& over_pi) {
   return irradiance;
 }
 
+// Records the paths of the inputs from the file's own folder: they then hold from any folder, and when map
+// and bake move together.
+Provenance with_paths_from(const std::filesystem::path& file, const Provenance& provenance) {
+  Provenance record = provenance;
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::weakly_canonical(file, error).parent_path();
+  for (const char* key : {"input_path", "normals_path"}) {
+    if (!record.contains(key)) continue;
+    const std::filesystem::path input =
+        std::filesystem::weakly_canonical(record[key].get<std::string>(), error);
+    const std::string path = input.lexically_relative(folder).string();
+    if (!error && !path.empty()) record[key] = valid_utf8(path);
+  }
+  return record;
+}
+
 }  // namespace
 
 void write_results(const BakeResult& result, const Provenance& provenance,
@@ -22,9 +38,9 @@ void write_results(const BakeResult& result, const Provenance& provenance,
     const LightTransport& transport = *result.transport;
     write_links(links_path, transport.final_gather,
                 transport.patch_form_factors.empty() ? nullptr : &transport.patch_form_factors,
-                irradiance_of(transport.patch_direct()), provenance);
+                irradiance_of(transport.patch_direct()), with_paths_from(links_path, provenance));
   }
-  write_bake(bake_path, result.planes, provenance);
+  write_bake(bake_path, result.planes, with_paths_from(bake_path, provenance));
 }
 
 }  // namespace hemibake

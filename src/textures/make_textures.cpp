@@ -28,6 +28,7 @@ bool holds_bounce(const TextureSettings& settings, TextureKind kind) {
 Provenance record_texture(const Provenance& of_bake, const Bake& bake, const TextureSettings& settings,
                           TextureKind kind) {
   Provenance p = of_bake;
+  for (const char* of_the_maker : {"input_path", "bake_input_path", "normals_path"}) p.erase(of_the_maker);
   record_texture_settings(settings, kind, p);
   p["holds"] = describe_texture(bake, settings, kind);
   p["encoding"] = holds_vectors(kind) ? "linear, 0..1 for -1..1" : "linear, 0..1";
