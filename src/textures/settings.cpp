@@ -77,7 +77,7 @@ Field unrecorded(Field field) {
 
 // Records a field only where there are textures of terrain.
 Field of_terrain(Field field, const TextureSettings& settings) {
-  field.recorded = [&settings] { return settings.wants_terrain(); };
+  field.recorded = [&settings, get = field.value.get] { return settings.wants_terrain() && get(); };
   return field;
 }
 
