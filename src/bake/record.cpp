@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "io/geo_place.h"
 
 namespace hemibake {
 namespace {
@@ -116,12 +117,29 @@ std::filesystem::path find_input(const Provenance& provenance, const char* path_
                   recorded.string()));
 }
 
+// Returns whether a bake is of 0.2.0 or before: none of them says what map values are.
+bool is_of_old_version(const Provenance& provenance) {
+  return provenance.contains("texel_size_m") && !provenance.contains("heights");
+}
+
+// Makes settings what old versions did without saying so.
+void read_as_before(const Provenance& provenance, const std::filesystem::path& path, MapSettings& settings) {
+  for (const char* key : {"size_m", "amplitude_m"})
+    if (!provenance.contains(key))
+      throw InputError(
+          fmt::format("{}: it does not say its {}, expected a bake of this version", path.string(), key));
+  settings.heights = HeightUnit::kUnit;
+  if (settings.normals_from != NormalSource::kMap) return;
+  settings.normal_channels = "0,1,2";
+  settings.normal_encoding = NormalEncoding::kLinear;
+}
+
 }  // namespace
 
-Provenance record_of(const MapSettings& map_settings, const LoadedMap& map, const BakeResult& result,
-                     std::string_view command) {
+Provenance record_of(const LoadedMap& map, const BakeResult& result, std::string_view command) {
   Provenance p = make_provenance(command);
-  record_map(map_settings, map.sha256, p);
+  record_map(map.settings, map.sha256, p);
+  if (map.place) record_place(*map.place, p);
   p["texel_size_m"] = result.texel_size_m;
   BakeSettings settings = result.settings;
   record_fields(bake_fields(settings), p);
@@ -173,6 +191,7 @@ MapSettings recorded_map_settings(const Provenance& provenance, const std::files
   read_fields(provenance, bake_path, map_fields(settings));
   if (settings.normals_from == NormalSource::kMap)
     settings.normal_map = find_input(provenance, "normals_path", "normals_sha256", bake_path);
+  if (is_of_old_version(provenance)) read_as_before(provenance, bake_path, settings);
   return settings;
 }
 

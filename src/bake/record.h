@@ -11,8 +11,7 @@
 namespace hemibake {
 
 // Records everything that decides the bytes of a bake, and what was measured of it. command: what made it.
-Provenance record_of(const MapSettings& map_settings, const LoadedMap& map, const BakeResult& result,
-                     std::string_view command);
+Provenance record_of(const LoadedMap& map, const BakeResult& result, std::string_view command);
 
 // Records the files of a map and how they were read.
 void record_map(const MapSettings& settings, const MapHashes& sha256, Provenance& provenance);
@@ -25,8 +24,9 @@ void record_fields(const std::vector<Field>& fields, Provenance& provenance);
 void read_fields(const Provenance& provenance, const std::filesystem::path& path,
                  const std::vector<Field>& fields);
 
-// Returns how the map of a bake was read. Looks for the map where the bake found it, and beside `bake_path`.
-// Throws InputError where it is in neither place or is no longer the same file.
+// Returns how the map of a bake was read; bakes of 0.2.0 and before took values for 0..1 whatever they were.
+// Looks for the map where the bake found it, and beside `bake_path`. Throws InputError where it is in neither
+// place or is no longer the same file.
 MapSettings recorded_map_settings(const Provenance& provenance, const std::filesystem::path& bake_path);
 
 // Returns how a bake was traced and bounced. Throws InputError where it does not say.

@@ -14,7 +14,7 @@ constexpr int kMaxAzimuths = 65536;
 constexpr int kMaxStoredBounces = 1000;
 constexpr int kMaxBounces = 1000000;
 constexpr int kMaxSteps = 10000000;
-constexpr double kLargestLengthM = 1e9;
+constexpr double kLargestLengthM = 1e9, kSmallestTexelM = 1e-12;
 
 // A field that is on the command line only.
 Field unrecorded(std::string name, std::string group, Value value, std::string help) {
@@ -42,7 +42,7 @@ Field when(std::function<bool()> has_meaning, Field field) {
   return field;
 }
 
-// Marks a field that bakes of 0.1.0 do not record.
+// Marks a field that bakes of older versions, or with other settings, do not record.
 Field with_default(Field field) {
   field.may_be_missing = true;
   return field;
@@ -117,19 +117,163 @@ void validate_normals(const MapSettings& map, const BakeSettings& settings, cons
   const bool has_map = map.normals_from == NormalSource::kMap;
   if (has_map && map.normal_map.empty())
     throw SettingError("{normals-from}: a normal map has a file, expected {normals} FILE");
-  if (has_map && !map.normal_y)
-    throw SettingError(
-        "the direction of its green channel is not known, expected {normal-y} up or {normal-y} down",
-        map.normal_map.string());
-  if (!has_map && map.normal_y)
-    throw SettingError("{normal-y}: there is no normal map, expected {normals} FILE with it");
+  const std::pair<const char*, bool> of_a_map[] = {{"normal-y", map.normal_y || map.decide_normal_y},
+                                                   {"normal-channels", !map.normal_channels.empty()},
+                                                   {"normal-encoding", map.normal_encoding.has_value()}};
+  for (const auto& [name, is_set] : of_a_map)
+    if (!has_map && is_set)
+      throw SettingError(
+          fmt::format("{{{}}}: there is no normal map, expected {{normals}} FILE with it", name));
   if (has_map && given("normals-from"))
     throw SettingError("{normals-from}: normals come from a normal map already, expected one of the two");
   if (settings.normal_length == NormalLength::kStored && (!has_map || settings.tracer != TracerKind::kMarch))
     throw SettingError("{normal-length}: stored lengths need {normals} and {tracer} march, expected both");
 }
 
+void validate_units(const MapSettings& map, const IsGiven& given) {
+  const auto exclude = [&given](const char* one, const char* other) {
+    if (given(one) && given(other))
+      throw SettingError(fmt::format("{{{}}}: is given with {{{}}}, expected one of the two", one, other));
+  };
+  exclude("texel-size", "size");
+  exclude("high", "amplitude");
+  exclude("low", "amplitude");
+  if (map.low_m && !map.high_m)
+    throw SettingError("{low}: is the height of black, expected {high} M for white with it");
+  if (map.high_m && map.heights == HeightUnit::kMetres)
+    throw SettingError("{high}: scales values of 0..1, expected no {heights} metres with it");
+}
+
+// Returns the fields of what is beyond the border and what the file holds.
+std::vector<Field> file_fields(MapSettings& s) {
+  return {
+      recorded("edge", "edge", "Surface", choice(s.edge, {"wrap", "open", "ground"}),
+               "beyond the border: the map again for ever (wrap), nothing (open), or ground level with the "
+               "border (ground)"),
+      recorded("channel", "channel", "", text(s.file.channel),
+               "channel of the map to take, by name or index; default: green, or the only one"),
+      when(
+          [&s] { return s.file.encoding != SplitEncoding::kNone; },
+          recorded(
+              "encoding", "encoding", "Map", choice(s.file.encoding, {"none", "terrarium", "mapbox", "rg16"}),
+              "heights split over channels of 8 bits: map tiles of Terrarium or Mapbox, or upper bits in "
+              "red and lower in green [none]")),
+      when([&s] { return s.file.part.has_value(); },
+           recorded("part", "part", "Map", whole(s.file.part, 0, 65535),
+                    "of a file of several images, from 0")),
+      when([&s] { return s.file.window != ImageWindow::kDisplay; },
+           recorded("window", "window", "Map", choice(s.file.window, {"display", "data"}),
+                    "of an EXR: the one that is shown, or the one that has data [display]")),
+      when([&s] { return !s.file.raw.empty(); },
+           shown_as(recorded("raw", "raw", "Map", text(s.file.raw),
+                             "size and type of a file without a header: u8, i8, u16le, u16be, i16le, i16be, "
+                             "f32le, f32be, f64le, f64be"),
+                    "WxH:TYPE")),
+      when([&s] { return s.file.no_data.has_value(); },
+           recorded("nodata", "nodata", "Map", number(s.file.no_data, -1e300, 1e300),
+                    "stored value of texels without a height; default: as the file says")),
+      when([&s] { return s.holes != Holes::kRefuse; },
+           recorded("holes", "holes", "Map", choice(s.holes, {"refuse", "fill"}),
+                    "texels without a height: refused (default), or filled smoothly from their rim")),
+  };
+}
+
+// Returns the fields of lengths and heights in metres.
+std::vector<Field> unit_fields(MapSettings& s) {
+  Value texel = numbers(s.texel_m, 2, kSmallestTexelM, kLargestLengthM);
+  texel.fewest = 1;
+  return {
+      with_default(when([&s] { return s.size_m.has_value(); },
+                        recorded("size", "size_m", "Surface", positive(s.size_m, kLargestLengthM),
+                                 "length of the map's longer side, m; default: 1, or as the file says"))),
+      with_default(when(
+          [&s] { return !s.texel_m.empty(); },
+          shown_as(recorded("texel-size", "texel_m", "Surface", texel,
+                            "width of a texel, and its height where that is another, m, instead of --size"),
+                   "X[,Y]"))),
+      with_default(
+          when([&s] { return s.amplitude_m.has_value(); },
+               recorded("amplitude", "amplitude_m", "Surface", number(s.amplitude_m, 0, kLargestLengthM),
+                        "height of map value 1 over 0, m; default: 0.1"))),
+      with_default(
+          when([&s] { return s.low_m.has_value(); },
+               recorded("low", "low_m", "Surface", number(s.low_m, -kLargestLengthM / 2, kLargestLengthM / 2),
+                        "height of map value 0 (black), m, with --high; default: 0"))),
+      with_default(when(
+          [&s] { return s.high_m.has_value(); },
+          recorded("high", "high_m", "Surface", number(s.high_m, -kLargestLengthM / 2, kLargestLengthM / 2),
+                   "height of map value 1 (white), m, instead of --amplitude; may be the lower one"))),
+      with_default(when(
+          [&s] { return s.heights.has_value(); },
+          recorded("heights", "heights", "Surface", choice(s.heights, {"metres", "unit"}),
+                   "map values: metres as stored, or 0..1 (integers over their range); default: metres for "
+                   "terrain, signed integers and floats that range over more than 2, else unit"))),
+  };
+}
+
+std::vector<Field> filter_fields(MapSettings& s) {
+  const auto filtered = [&s] { return s.filter.radius > 0; };
+  return {
+      recorded("filter-radius", "filter_radius", "March", number(s.filter.radius, 0, 16),
+               "bilateral filter of the heights first, texels; 0: none [1]"),
+      when(filtered, recorded("filter-tolerance", "filter_tolerance", "March",
+                              positive(s.filter.tolerance, 1e6), "its range, in map values 0..1 [0.2]")),
+      when(filtered, recorded("filter-sum", "filter_sum", "March", choice(s.filter.sum, {"all", "published"}),
+                              "its whole kernel, or the part the published shader adds up [published]")),
+  };
+}
+
+std::vector<Field> normal_fields(MapSettings& s) {
+  const auto has_normal_map = [&s] { return s.normals_from == NormalSource::kMap; };
+  Field normals =
+      recorded("normals-from", "normals", "Surface", choice(s.normals_from, {"heights", "faces", "map"}),
+               "without a normal map: central differences of the heights, or angle-weighted faces");
+  normals.key_prefix = "from ";
+  normals.value.type = "TEXT:{heights,faces}";  // a map is said by its file
+  return {
+      normals,
+      shown_as(unrecorded("normals", "Surface", file(s.normal_map),
+                          "normal map of the same size; needs --normal-y, but for normals of a bake"),
+               "FILE"),
+      with_default(when(
+          [&s, has_normal_map] { return has_normal_map() && (s.normal_y || s.decide_normal_y); },
+          recorded("normal-y", "normal_y", "Surface", normal_y_value(s.normal_y, &s.decide_normal_y),
+                   "green of the normal map grows against the image rows (up, OpenGL), along them (down, "
+                   "DirectX), or as fits the heights (auto)"))),
+      with_default(when(
+          [&s, has_normal_map] { return has_normal_map() && !s.normal_channels.empty(); },
+          shown_as(recorded("normal-channels", "normal_channels", "Surface", text(s.normal_channels),
+                            "channels of the normal map, by name or index, a minus before one that is stored "
+                            "negated; z may be left out; default: the first three"),
+                   "X,Y[,Z]"))),
+      with_default(when(
+          [&s, has_normal_map] { return has_normal_map() && s.normal_encoding; },
+          recorded("normal-encoding", "normal_encoding", "Surface",
+                   choice(s.normal_encoding, {"linear", "signed", "srgb"}),
+                   "of the normal map's numbers: 0..1, -1..1, or 0..1 by the curve of sRGB; default: signed "
+                   "for floats that prove it, else linear"))),
+  };
+}
+
 }  // namespace
+
+Value normal_y_value(std::optional<NormalY>& variable, bool* decide) {
+  // Up and down in turn; "auto" last, and only with `decide`.
+  std::vector<std::string> names = {"up", "down", "opengl", "directx", "gl", "dx"};
+  const size_t kAuto = names.size();
+  if (decide != nullptr) names.emplace_back("auto");
+  return choice_of(
+      std::move(names),
+      [&variable, decide, kAuto]() -> std::optional<size_t> {
+        if (variable) return static_cast<size_t>(*variable);
+        return decide != nullptr && *decide ? std::optional(kAuto) : std::nullopt;
+      },
+      [&variable, decide, kAuto](size_t index) {
+        if (decide != nullptr) *decide = index == kAuto;
+        variable.reset();
+        if (index != kAuto) variable = static_cast<NormalY>(index % 2);
+      });
+}
 
 bool BakeSettings::wants(BakeOutput output) const {
   return std::ranges::find(outputs, output) != outputs.end();
@@ -144,61 +288,12 @@ bool BakeSettings::makes_bounce_plane() const {
 }
 
 std::vector<Field> map_fields(MapSettings& s) {
-  const auto filtered = [&s] { return s.filter.radius > 0; };
-  const auto has_normal_map = [&s] { return s.normals_from == NormalSource::kMap; };
-  Field map =
-      unrecorded("MAP", "", file(s.map), "height map: PNG, TIFF, EXR or anything else OpenImageIO reads");
-  map.required = true;
-  Field normals =
-      recorded("normals-from", "normals", "Surface", choice(s.normals_from, {"heights", "faces", "map"}),
-               "without a normal map: central differences of the heights, or angle-weighted faces");
-  normals.key_prefix = "from ";
-  normals.value.type = "TEXT:{heights,faces}";  // a map is said by its file
-  return {
-      map,
-      recorded("size", "size_m", "Surface", positive(s.size_m, kLargestLengthM),
-               "length of the map's longer side, m"),
-      recorded("amplitude", "amplitude_m", "Surface", number(s.amplitude_m, 0, kLargestLengthM),
-               "height of map value 1 over 0, m"),
-      recorded("edge", "edge", "Surface", choice(s.edge, {"wrap", "open", "ground"}),
-               "beyond the border: the map again for ever (wrap), nothing (open), or ground level with the "
-               "border (ground)"),
-      recorded("channel", "channel", "", text(s.file.channel),
-               "channel of the map to take, by name or index; default: green, or the only one"),
-      when(
-          [&s] { return s.file.encoding != SplitEncoding::kNone; },
-          recorded(
-              "encoding", "encoding", "Map", choice(s.file.encoding, {"none", "terrarium", "mapbox", "rg16"}),
-              "heights split over channels of 8 bits: map tiles of Terrarium or Mapbox, or upper bits in "
-              "red and lower in green [none]")),
-      when([&s] { return s.file.part != 0; }, recorded("part", "part", "Map", whole(s.file.part, 0, 65535),
-                                                       "of a file of several images, from 0")),
-      when([&s] { return s.file.window != ImageWindow::kDisplay; },
-           recorded("window", "window", "Map", choice(s.file.window, {"display", "data"}),
-                    "of an EXR: the one that is shown, or the one that has data [display]")),
-      when([&s] { return !s.file.raw.empty(); },
-           shown_as(recorded("raw", "raw", "Map", text(s.file.raw),
-                             "size and type of a file without a header: u8, i8, u16le, u16be, i16le, i16be, "
-                             "f32le, f32be, f64le, f64be"),
-                    "WxH:TYPE")),
-      when([&s] { return s.file.no_data.has_value(); },
-           recorded("nodata", "nodata", "Map", number(s.file.no_data, -1e300, 1e300),
-                    "stored value of texels without a height; default: as the file says")),
-      recorded("filter-radius", "filter_radius", "March", number(s.filter.radius, 0, 16),
-               "bilateral filter of the heights first, texels; 0: none [1]"),
-      when(filtered, recorded("filter-tolerance", "filter_tolerance", "March",
-                              positive(s.filter.tolerance, 1e6), "its range, in map values 0..1 [0.2]")),
-      when(filtered, recorded("filter-sum", "filter_sum", "March", choice(s.filter.sum, {"all", "published"}),
-                              "its whole kernel, or the part the published shader adds up [published]")),
-      normals,
-      shown_as(unrecorded("normals", "Surface", file(s.normal_map),
-                          "normal map of the same size; needs --normal-y"),
-               "FILE"),
-      when(has_normal_map,
-           recorded("normal-y", "normal_y", "Surface", choice(s.normal_y, {"up", "down"}),
-                    "green of the normal map grows against the image rows (up, OpenGL) or along them (down, "
-                    "DirectX)")),
-  };
+  std::vector<Field> fields = {
+      unrecorded("MAP", "", file(s.map), "height map: PNG, TIFF, EXR or anything else OpenImageIO reads")};
+  fields[0].required = true;
+  for (const std::vector<Field>& more : {unit_fields(s), file_fields(s), filter_fields(s), normal_fields(s)})
+    fields.insert(fields.end(), more.begin(), more.end());
+  return fields;
 }
 
 // In the order of the record; the help sorts by group.
@@ -304,6 +399,7 @@ void validate(const MapSettings& map, const BakeSettings& settings, const IsGive
   validate_target_error(settings, given);
   validate_tracer(settings);
   validate_edge(map, settings);
+  validate_units(map, given);
   validate_normals(map, settings, given);
   if (settings.converge && !settings.wants(BakeOutput::kIrradiance))
     throw SettingError("{converge}: irradiance is not among {outputs}, expected it there");

@@ -13,11 +13,11 @@
 
 #include "core/error.h"
 #include "core/field.h"
+#include "io/height_file.h"
 #include "surface/filter.h"
 #include "surface/normals.h"
 #include "surface/surface.h"
 #include "tracers/march/march.h"
-#include "io/height_file.h"
 #include "tracers/ray_options.h"
 
 namespace hemibake {
@@ -25,19 +25,35 @@ namespace hemibake {
 // Source of the texels' normals: central differences of the heights, angle-weighted faces, or a file.
 enum class NormalSource { kHeights, kFaces, kMap };
 
+// Values of a height map: metres, or 0..1 (integers over their range) times the amplitude.
+enum class HeightUnit { kMetres, kUnit };
+
+// Texels without a height: refused, or filled from their rim (surface/holes.h).
+enum class Holes { kRefuse, kFill };
+
 // Rays of a march follow unit normals, or the normal map's as long as they are stored.
 enum class NormalLength { kUnit, kStored };
+
+// Names of the enumerators of NormalY, and what other programs call them. decide: also "auto", which sets it.
+Value normal_y_value(std::optional<NormalY>& variable, bool* decide = nullptr);
 
 struct MapSettings {
   std::filesystem::path map;
   HeightFileOptions file;
-  double size_m = 1;         // the longer side
-  double amplitude_m = 0.1;  // height of map value 1 over 0
+  Holes holes = Holes::kRefuse;
+  std::optional<HeightUnit> heights;    // absent: as the file is
+  std::optional<double> size_m;         // the longer side; absent: 1, or what the texels say
+  std::vector<double> texel_m;          // width, and height where it is another; empty: from the size
+  std::optional<double> amplitude_m;    // height of map value 1 over 0; absent: 0.1
+  std::optional<double> low_m, high_m;  // heights of map values 0 and 1, instead of an amplitude
   Edge edge = Edge::kWrap;
   FilterOptions filter{.radius = 0};
   NormalSource normals_from = NormalSource::kHeights;
   std::filesystem::path normal_map;
-  std::optional<NormalY> normal_y;  // required with a normal map
+  std::optional<NormalY> normal_y;  // absent: as the file says, or decided by the heights
+  bool decide_normal_y = false;     // by the heights
+  std::string normal_channels;      // X,Y[,Z] by name or index, a minus before what is stored negated
+  std::optional<NormalEncoding> normal_encoding;  // absent: told from the values
 };
 
 enum class TracerKind { kEmbree, kMarch, kSlice };

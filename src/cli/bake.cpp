@@ -12,6 +12,7 @@
 #include "cli/batch.h"
 #include "cli/options/bake_options.h"
 #include "cli/print/bake.h"
+#include "cli/print/map.h"
 #include "cli/print/replay.h"
 #include "cli/print/textures.h"
 #include "cli/print/warnings.h"
@@ -44,31 +45,39 @@ void check_outputs(const BakeCommandOptions& options) {
 
 // Replays a texel or says memory and work, without a bake.
 MapOutcome say_beforehand(const BakeCommandOptions& options, const PreparedBake& prepared) {
-  if (options.texel.empty()) return {json_from_plan(prepared.plan), describe_plan(prepared), "", 0};
+  if (options.texel.empty()) {
+    nlohmann::ordered_json json = json_from_plan(prepared.plan);
+    json["map"] = json_from_map(*prepared.map);
+    json["warnings"] = warnings_of(*prepared.map);
+    return {json, describe_map(*prepared.map) + describe_plan(prepared), "", 0};
+  }
   const Replay replay = with_file_context(
       options.map.map, [&] { return replay_texel(prepared, options.texel[0], options.texel[1]); });
   return {json_from_replay(replay), describe_replay(replay), "", 0};
 }
 
 // Bakes one map. options: resolved.
-MapOutcome bake_one(BakeCommandOptions options, const Invocation& invocation) {
+MapOutcome bake_one(BakeCommandOptions options, Again again, const Invocation& invocation) {
   if (options.writes()) check_outputs(options);
   options.bake.spill_folder = options.output.parent_path();
   const LoadedMap map = load_map(options.map, options.bake.normal_length);
+  if (again == Again::kSkip && records(options.output, wanted_record(map, options.bake)))
+    return skipped(options.map.map, options.output);
+  print_warnings(options.map.map.string(), warnings_of(map));
   const PreparedBake prepared = with_file_context(options.map.map, [&] {
     return prepare_bake(map, options.bake,
                         options.writes() ? MemoryLimit::kEnforced : MemoryLimit::kPlannedOnly);
   });
   if (!options.writes()) return say_beforehand(options, prepared);
   const BakeResult result = bake(prepared);
-  const Provenance provenance = record_of(options.map, map, result, invocation.context.command);
+  const Provenance provenance = record_of(map, result, invocation.context.command);
   write_results(result, provenance, options.output, options.links);
   print_warnings(options.map.map.string(), warnings_of(result));
-  nlohmann::ordered_json json = json_from_bake(result, provenance);
+  nlohmann::ordered_json json = json_from_bake(map, result, provenance);
   const std::optional<BounceMapLoss> loss = bounce_map_loss(result.planes);
   json["bounce_map"] = json_from_bounce_map(loss);
   json["output"] = options.output.string();
-  return {json, describe_bake(options, result) + describe_bounce_map(loss),
+  return {json, describe_bake(map, result) + describe_bounce_map(loss),
           line_of_bake(options.map, result, options.output), 0};
 }
 
@@ -85,8 +94,7 @@ int bake_many(const BakeCommandOptions& options, const Invocation& invocation) {
     of_map.map.map = map;
     of_map.output = options.output / (map.stem().string() + ".exr");
     resolve(of_map, invocation);
-    if (records(of_map.output, wanted_record(of_map.map, of_map.bake))) return skipped(map, of_map.output);
-    return bake_one(of_map, invocation);
+    return bake_one(of_map, Again::kSkip, invocation);
   });
 }
 
@@ -94,7 +102,7 @@ int run_bake(BakeCommandOptions& options, const Invocation& invocation) {
   if (names_many(options.maps)) return bake_many(options, invocation);
   options.map.map = options.maps[0];
   resolve(options, invocation);
-  const MapOutcome outcome = bake_one(options, invocation);
+  const MapOutcome outcome = bake_one(options, Again::kMake, invocation);
   invocation.print(outcome.json, outcome.text);
   return outcome.exit_code;
 }

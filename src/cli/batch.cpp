@@ -8,10 +8,10 @@
 #include <iterator>
 #include <map>
 
-#include "bake/load.h"
 #include "bake/record.h"
 #include "cli/print/warnings.h"
 #include "core/error.h"
+#include "io/geo_place.h"
 #include "io/image_io.h"
 #include "io/output_file.h"
 
@@ -49,8 +49,9 @@ std::vector<fs::path> images_in(const fs::path& folder) {
     const fs::path& path = entry->path();
     std::error_code not_there;
     const bool is_image =
-        entry->is_regular_file(not_there) && path.filename().string()[0] != '.' &&
-        std::ranges::find(kImageExtensions, lower_case_extension(path)) != kImageExtensions.end();
+        entry->is_regular_file(not_there) && path.filename().string()[0] != '.' && !is_geo_header(path) &&
+        (is_geo_file(path) ||
+         std::ranges::find(kImageExtensions, lower_case_extension(path)) != kImageExtensions.end());
     if (!is_image) continue;
     const ImageKind kind = kind_of(path);
     if (kind == ImageKind::kMap) images.push_back(path);
@@ -71,8 +72,9 @@ void take_several_maps(std::vector<Field>& fields, std::vector<std::string>& map
   const auto field = std::ranges::find(fields, "MAP", &Field::name);
   field->value = texts(maps);
   field->help =
-      "height map: PNG, TIFF, EXR or anything else OpenImageIO reads; several, or a folder of them: each is "
-      "done, bad ones are named, done ones skipped";
+      "height map: PNG, TIFF, EXR or anything else OpenImageIO reads, or terrain (GeoTIFF, VRT, ...) in "
+      "metres; "
+      "several, or a folder of them: each is done, bad ones are named, done ones skipped";
 }
 
 MapOutcome skipped(const fs::path& map, const fs::path& output) {
@@ -110,9 +112,9 @@ void refuse_settings_of_one_map(const Invocation& invocation, std::initializer_l
       throw InputError(fmt::format("--{}: is of one map, expected one map with it", name));
 }
 
-Provenance wanted_record(const MapSettings& map, const BakeSettings& settings) {
+Provenance wanted_record(const LoadedMap& map, const BakeSettings& settings) {
   Provenance wanted = make_provenance("");
-  record_map(map, hash_files(map), wanted);
+  record_map(map.settings, map.sha256, wanted);
   BakeSettings copy = settings;
   record_fields(bake_fields(copy), wanted);
   for (const char* elsewhere : {"command", "input_path", "normals_path"}) wanted.erase(elsewhere);

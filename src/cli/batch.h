@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/load.h"
 #include "bake/settings.h"
 #include "cli/options/command.h"
 #include "io/provenance.h"
@@ -20,6 +21,9 @@ struct MapOutcome {
   std::string line;   // of one map among many, without a line break
   int exit_code = 0;  // 0 or 1
 };
+
+// What becomes of a map whose results are there already.
+enum class Again { kSkip, kMake };
 
 // Replaces the field MAP by one for several maps and folders.
 void take_several_maps(std::vector<Field>& fields, std::vector<std::string>& maps);
@@ -39,7 +43,7 @@ std::vector<std::filesystem::path> find_maps(const std::vector<std::string>& arg
 void refuse_settings_of_one_map(const Invocation& invocation, std::initializer_list<const char*> names);
 
 // Returns what a bake by this version records of its map and settings.
-Provenance wanted_record(const MapSettings& map, const BakeSettings& settings);
+Provenance wanted_record(const LoadedMap& map, const BakeSettings& settings);
 
 // Returns whether an image is there and records everything that is wanted.
 bool records(const std::filesystem::path& image, const Provenance& wanted);

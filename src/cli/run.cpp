@@ -14,6 +14,7 @@
 #include "cli/print/bake.h"
 #include "cli/print/checks.h"
 #include "cli/print/fits.h"
+#include "cli/print/map.h"
 #include "cli/print/textures.h"
 #include "cli/print/warnings.h"
 #include "cli/result_folder.h"
@@ -76,16 +77,25 @@ void check_outputs(const RunOptions& options) {
   if (!options.links.empty()) check_bake_output(options.map, options.links, {".h5", ".hdf5"});
 }
 
+// Returns whether the results of an earlier run are there and those of this one would be the same.
+bool was_run(const RunOptions& options, const LoadedMap& map) {
+  std::error_code not_there;
+  return std::filesystem::exists(options.folder / "check.json", not_there) &&
+         records(options.folder / "bake.exr", wanted_record(map, options.bake));
+}
+
 // Does it all for one map. options: resolved.
-MapOutcome run_one(RunOptions options, const Invocation& invocation) {
+MapOutcome run_one(RunOptions options, Again again, const Invocation& invocation) {
   const ResultFolder folder(options.folder);
   check_outputs(options);
 
   options.bake.spill_folder = options.folder;
   const LoadedMap map = load_map(options.map, options.bake.normal_length);
+  if (again == Again::kSkip && was_run(options, map)) return skipped(options.map.map, options.folder);
+  print_warnings(options.map.map.string(), warnings_of(map));
   const BakeResult result =
       with_file_context(options.map.map, [&] { return bake(map, options.bake, invocation.context); });
-  const Provenance provenance = record_of(options.map, map, result, invocation.context.command);
+  const Provenance provenance = record_of(map, result, invocation.context.command);
   write_results(result, provenance, options.folder / "bake.exr", options.links);
 
   const Curves curves = make_curves(result.planes, options.bins);
@@ -96,7 +106,7 @@ MapOutcome run_one(RunOptions options, const Invocation& invocation) {
   print_warnings(options.map.map.string(), warnings_of(result));
 
   const std::optional<FitFile> fits = write_fits_of(curves, options, provenance);
-  nlohmann::ordered_json json = json_from_bake(result, provenance);
+  nlohmann::ordered_json json = json_from_bake(map, result, provenance);
   const std::optional<BounceMapLoss> loss = bounce_map_loss(result.planes);
   json["bounce_map"] = json_from_bounce_map(loss);
   json["fits"] = nullptr;
@@ -107,16 +117,9 @@ MapOutcome run_one(RunOptions options, const Invocation& invocation) {
   json["check"] = json_from_checks(checks);
   json["output"] = options.folder.string();
   return {json,
-          describe_bake(options, result) + describe_bounce_map(loss) + (fits ? describe_fits(*fits) : "") +
+          describe_bake(map, result) + describe_bounce_map(loss) + (fits ? describe_fits(*fits) : "") +
               table_from_checks(checks),
           line_of_bake(options.map, result, options.folder), fits && all_passed(checks) ? 0 : 1};
-}
-
-// Returns whether the results of an earlier run are there and those of this one would be the same.
-bool was_run(const RunOptions& options) {
-  std::error_code not_there;
-  return std::filesystem::exists(options.folder / "check.json", not_there) &&
-         records(options.folder / "bake.exr", wanted_record(options.map, options.bake));
 }
 
 int run_many(const RunOptions& options, const Invocation& invocation) {
@@ -128,8 +131,7 @@ int run_many(const RunOptions& options, const Invocation& invocation) {
     of_map.map.map = map;
     of_map.folder = options.folder / map.stem();
     resolve(of_map, invocation);
-    if (was_run(of_map)) return skipped(map, of_map.folder);
-    return run_one(of_map, invocation);
+    return run_one(of_map, Again::kSkip, invocation);
   });
 }
 
@@ -137,7 +139,7 @@ int run_all(RunOptions& options, const Invocation& invocation) {
   if (names_many(options.maps)) return run_many(options, invocation);
   options.map.map = options.maps[0];
   resolve(options, invocation);
-  const MapOutcome outcome = run_one(options, invocation);
+  const MapOutcome outcome = run_one(options, Again::kMake, invocation);
   invocation.print(outcome.json, outcome.text);
   return outcome.exit_code;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "bake/bake.h"
 #include "bake/crop.h"
@@ -12,11 +13,13 @@
 #include "cli/batch.h"
 #include "cli/options/bake_options.h"
 #include "cli/print/bake.h"
+#include "cli/print/map.h"
 #include "cli/print/warnings.h"
 #include "cli/result_folder.h"
 #include "core/error.h"
 #include "io/bake_file.h"
 #include "io/file_context.h"
+#include "io/geo_place.h"
 #include "io/image_io.h"
 #include "io/output_file.h"
 #include "textures/make_textures.h"
@@ -40,6 +43,7 @@ struct TexturesOptions : BakeOptions {
 
 // Returns whether a file is a bake; any other is a height map.
 bool is_bake(const fs::path& path) {
+  if (is_geo_file(path)) return false;
   const ImageHeader header = read_image_header(path);
   if (!header.provenance.is_object()) return false;
   return std::ranges::any_of(header.channels, [](const std::string& channel) {
@@ -107,21 +111,16 @@ std::vector<WrittenTexture> textures_of_bake(const TexturesOptions& options, con
   });
 }
 
-void refuse_normal_map_without_y(const TexturesOptions& options) {
-  const bool has_map = !options.map.normal_map.empty();
-  if (has_map && !options.map.normal_y && !options.bake.preset)
-    throw SettingError(fmt::format("the direction of its green channel is not known, expected {{{0}}} up or "
-                                   "{{{0}}} down",
-                                   kNormalMapY),
-                       options.map.normal_map.string());
-  if (!has_map && options.map.normal_y)
-    throw SettingError(
-        fmt::format("{{{}}}: there is no normal map, expected {{normals}} FILE with it", kNormalMapY));
+// Returns a message with the name that a normal map's green channel has here.
+std::string with_names_of_textures(std::string message) {
+  const std::string of_bake = "--normal-y";
+  for (size_t at = 0; (at = message.find(of_bake, at)) != std::string::npos; at += 1)
+    message.replace(at, of_bake.size(), std::string("--") + kNormalMapY);
+  return message;
 }
 
 void resolve_bake_of_map(TexturesOptions& options, const Invocation& invocation) {
   bake_only_what_textures_need(options.textures, options.bake);
-  refuse_normal_map_without_y(options);
   resolve(options, {invocation.context,
                     [&](const std::string& option) {
                       return option != "outputs" &&
@@ -131,11 +130,21 @@ void resolve_bake_of_map(TexturesOptions& options, const Invocation& invocation)
   options.bake.spill_folder = options.folder;
 }
 
-std::vector<WrittenTexture> textures_of_map(const TexturesOptions& options, const std::string& name,
-                                            const Invocation& invocation) {
-  const LoadedMap map = load_map(options.map, options.bake.normal_length);
+// Loads the map that is to be baked. options: their bake is resolved afterwards.
+LoadedMap load_map_to_bake(TexturesOptions& options, const Invocation& invocation) {
+  try {
+    resolve_bake_of_map(options, invocation);
+    return load_map(options.map, options.bake.normal_length);
+  } catch (const SettingError& error) {
+    throw InputError(with_names_of_textures(error.with_prefix("--")));
+  }
+}
+
+std::vector<WrittenTexture> textures_of_map(const TexturesOptions& options, const LoadedMap& map,
+                                            const std::string& name, const Invocation& invocation) {
   const int margin = options.bake.margin;
-  check_margin(margin, map.surface.width(), map.surface.height());
+  with_file_context(options.map.map,
+                    [&] { check_margin(margin, map.surface.width(), map.surface.height()); });
   TerrainPlanes terrain;
   if (options.textures.wants_terrain())
     terrain = terrain_of(map.surface, options.map.map, options.textures, margin);
@@ -147,20 +156,20 @@ std::vector<WrittenTexture> textures_of_map(const TexturesOptions& options, cons
   if (options.textures.wants_bake())
     result = with_file_context(options.map.map, [&] { return bake(map, options.bake, invocation.context); });
   print_warnings(options.map.map.string(), warnings_of(result));
-  return make_textures({result.planes, terrain},
-                       record_of(options.map, map, result, invocation.context.command), options.textures,
-                       options.folder, name);
+  return make_textures({result.planes, terrain}, record_of(map, result, invocation.context.command),
+                       options.textures, options.folder, name);
 }
 
 // Returns whether every texture is there as it would be made again. options: resolved.
-bool were_made(const TexturesOptions& options, bool baked, const std::string& name) {
+// map: where no bake was given.
+bool were_made(const TexturesOptions& options, const std::optional<LoadedMap>& map, const std::string& name) {
   Provenance wanted;
-  if (baked) {
+  if (!map) {
     wanted = record_of_bake(options.map.map, read_image_header(options.map.map).provenance, "");
     for (const char* elsewhere : {"command", "bake_command", "bake_input_path", "normals_path"})
       wanted.erase(elsewhere);
   } else {
-    wanted = wanted_record(options.map, options.bake);
+    wanted = wanted_record(*map, options.bake);
   }
   const std::vector<fs::path> paths = texture_paths(options.textures, options.folder, name);
   for (size_t t = 0; t < paths.size(); ++t) {
@@ -170,27 +179,30 @@ bool were_made(const TexturesOptions& options, bool baked, const std::string& na
   return true;
 }
 
-enum class Again { kSkip, kMake };
-
 // Makes the textures of one bake or map. options: its textures resolved.
 MapOutcome make_one(TexturesOptions options, Again again, const Invocation& invocation) {
-  const bool baked = is_bake(options.map.map);
   const std::string name = options.map.map.stem().string();
   check_outputs(options, name);
-  if (baked)
+  std::optional<LoadedMap> map;
+  if (is_bake(options.map.map))
     refuse_options_of_a_bake(options, invocation);
   else
-    resolve_bake_of_map(options, invocation);
-  if (again == Again::kSkip && were_made(options, baked, name))
-    return skipped(options.map.map, options.folder);
+    map = load_map_to_bake(options, invocation);
+  if (again == Again::kSkip && were_made(options, map, name)) return skipped(options.map.map, options.folder);
+  nlohmann::ordered_json json = {{"output", options.folder.string()}, {"input", options.map.map.string()}};
+  if (map) {
+    std::vector<std::string> warnings = warnings_of(*map);
+    for (std::string& warning : warnings) warning = with_names_of_textures(warning);
+    print_warnings(options.map.map.string(), warnings);
+    json["map"] = json_from_map(*map);
+    json["warnings"] = warnings;
+  }
   const std::vector<WrittenTexture> textures =
-      baked ? textures_of_bake(options, name, invocation) : textures_of_map(options, name, invocation);
-  return {{{"output", options.folder.string()},
-           {"input", options.map.map.string()},
-           {"textures", json_from_textures(textures, options.textures)}},
-          describe_textures(textures, options.textures, options.folder),
-          line_of_textures(textures, options.map.map, options.folder),
-          0};
+      map ? textures_of_map(options, *map, name, invocation) : textures_of_bake(options, name, invocation);
+  json["textures"] = json_from_textures(textures, options.textures);
+  return {json,
+          (map ? describe_map(*map) : "") + describe_textures(textures, options.textures, options.folder),
+          line_of_textures(textures, options.map.map, options.folder), 0};
 }
 
 int make_many(TexturesOptions& options, const Invocation& invocation) {

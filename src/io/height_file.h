@@ -22,7 +22,7 @@ enum class ImageWindow { kDisplay, kData };
 // What the user says about a file. Everything is optional.
 struct HeightFileOptions {
   std::string channel;  // name (any case where only one matches) or index; empty: the only one, green, or Y
-  int part = 0;         // of a file of several images
+  std::optional<int> part;  // of a file of several images, from 0
   ImageWindow window = ImageWindow::kDisplay;
   SplitEncoding encoding = SplitEncoding::kNone;
   std::string raw;                // "WxH:TYPE" of a file without a header; TYPE: u8, u16le, i16be, f32le, …

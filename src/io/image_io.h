@@ -35,7 +35,8 @@ using MutablePlane = BasicPlane<float>;
 
 // Every reading function throws InputError naming the file where it is missing, a folder, not an image, cut
 // short, empty, larger than kMaxTexels, deep, a volume, several images in one, or an EXR whose data window is
-// not its display window; and naming channel and texel for a value read that is not finite.
+// not its display window; and naming channel and texel for a value read that is not finite. Overviews and
+// masks of a TIFF are no images of their own. Images come right way up: orientation (EXIF, TIFF) is applied.
 
 ImageHeader read_image_header(const std::filesystem::path& path);
 
@@ -45,12 +46,22 @@ void read_planes(const std::filesystem::path& path, int width, int height,
                  std::span<const MutablePlane> planes);
 
 // Reads one channel. Throws InputError listing the channels where `channel` does not choose one.
-// channel: its name (any case where only one matches) or its index from 0; empty: the only one, else green
-//          (`G`), else the luminance (`Y`).
+// channel: its name (any case where only one matches) or its index from 0; empty: the only one beside alpha,
+//          else green (`G`), else the luminance (`Y`).
 Grid<float> read_height_map(const std::filesystem::path& path, const std::string& channel = "");
 
-// Reads the first three channels, 0..1. Throws InputError naming both sizes where it is not width × height.
-Grid<glm::vec3> read_normal_map(const std::filesystem::path& path, int width, int height);
+struct NormalImage {
+  Grid<glm::vec3> values;  // as stored: integers over the largest of their type, floats themselves
+  bool stored_as_integers = false;
+  std::vector<std::string> channels;  // the three taken: "R", "G", "B"
+};
+
+// Reads a normal map without decoding it: `normal.X`, `normal.Y`, `normal.Z` where it has them, as a bake
+// does, else the first three channels. Throws InputError naming both sizes where it is not width × height, and
+// where it is stored turned: which way its vectors point is open then.
+// channels: two or three to take instead, each by name or index; of two the third value is 0.
+NormalImage read_normal_map(const std::filesystem::path& path, int width, int height,
+                            const std::vector<std::string>& channels = {});
 
 struct ColorImage {
   Grid<glm::vec3> colors;

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/record.h"
+#include "io/geo_place.h"
+#include "io/geo_write.h"
 #include "io/output_file.h"
 #include "textures/bounce_map.h"
 #include "textures/layers.h"
@@ -75,6 +77,14 @@ ChannelRange range_of(const Layer& layer) {
   return range;
 }
 
+void write_one(OutputFile& file, const Bake& bake, const std::vector<Plane>& planes,
+               const TextureCoding& coding, const Grid<uint8_t>& holes, const Provenance& provenance) {
+  if (coding.format == TextureFormat::kTif)
+    if (const std::optional<GeoPlace> place = recorded_place(provenance))
+      return write_geo_tiff(file, bake.width, bake.height, planes, {*place, holes}, provenance);
+  write_texture(file, bake.width, bake.height, planes, coding, provenance);
+}
+
 }  // namespace
 
 void record_texture_settings(const TextureSettings& settings, TextureKind kind, Provenance& provenance) {
@@ -86,7 +96,8 @@ void record_texture_settings(const TextureSettings& settings, TextureKind kind, 
 
 std::vector<WrittenTexture> make_textures(const TextureSource& source, const Provenance& provenance,
                                           const TextureSettings& settings,
-                                          const std::filesystem::path& folder, const std::string& name) {
+                                          const std::filesystem::path& folder, const std::string& name,
+                                          const Grid<uint8_t>& holes) {
   const Bake& bake = source.bake;
   check_planes(bake, settings);
   const PackedInputs packed = read_packed_inputs(settings, bake.width, bake.height);
@@ -107,8 +118,8 @@ std::vector<WrittenTexture> make_textures(const TextureSource& source, const Pro
       texture.channels.push_back(range_of(layer));
     }
     files.push_back(std::make_unique<OutputFile>(paths[t]));
-    write_texture(*files.back(), bake.width, bake.height, planes, settings.coding,
-                  record_texture(provenance, bake, settings, kind));
+    write_one(*files.back(), bake, planes, settings.coding, holes,
+              record_texture(provenance, bake, settings, kind));
     files.back()->finish();
     written.push_back(std::move(texture));
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/grid.h"
 #include "io/provenance.h"
 #include "terrain/terrain.h"
 #include "textures/bounce_map_loss.h"
@@ -38,10 +39,12 @@ void record_texture_settings(const TextureSettings& settings, TextureKind kind, 
 
 // Writes every texture of the settings, all or none. source: a bake with the planes of
 // bake_only_what_textures_need (planes.h), or more. provenance: how the bake was made. settings: resolved.
-// name: what the files' names begin with. Throws InputError as check_planes and read_packed_inputs, and where
-// a file cannot be written.
+// name: what the files' names begin with. A TIFF of a bake that records a place on the earth is a GeoTIFF
+// there. holes: texels that have no value; NoData in a GeoTIFF; empty: none. Throws InputError as
+// check_planes and read_packed_inputs, and where a file cannot be written.
 std::vector<WrittenTexture> make_textures(const TextureSource& source, const Provenance& provenance,
                                           const TextureSettings& settings,
-                                          const std::filesystem::path& folder, const std::string& name);
+                                          const std::filesystem::path& folder, const std::string& name,
+                                          const Grid<uint8_t>& holes = {});
 
 }  // namespace hemibake

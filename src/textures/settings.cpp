@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "bake/settings.h"
 #include "core/error.h"
 #include "textures/engines.h"
 
@@ -161,7 +162,7 @@ std::vector<Field> texture_fields(TextureSettings& s) {
                     "PNG of 16 or 8 bits, EXR or TIFF of 32-bit floats; all linear, 0..1"),
       texture_field("dither", flag(s.coding.dither), "with png8: dither, so that means keep their fractions"),
       texture_field(
-          "normal-y", choice(s.normal_y, {"up", "down"}),
+          "normal-y", normal_y_value(s.normal_y),
           "green of bent and normal grows against the image rows (up, OpenGL; default) or along them "
           "(down, DirectX)"),
       texture_field("bent-length", choice(s.bent_length, {"unit", "visibility", "ao"}),

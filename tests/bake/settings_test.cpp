@@ -24,7 +24,7 @@ std::string other_value(const Field& field, const std::string& text) {
     case Value::Kind::kFlag:
       return text == "true" ? "false" : "true";
     case Value::Kind::kText:
-      return "other";
+      return field.value.type.starts_with("FLOAT") ? "2" : "other";
     default:
       break;
   }
@@ -50,9 +50,9 @@ void expect_every_field_comes_back(const Settings& base, std::vector<Field> (*fi
     Settings changed = base;
     const Field field = fields_of(changed)[i];
     if (field.key.empty()) continue;
-    const std::string value = other_value(field, field.value.get().value_or(""));
-    field.value.set({value});
-    if (!field.recorded()) continue;  // has no meaning beside the others of `base`
+    field.value.set({other_value(field, field.value.get().value_or(""))});
+    const std::string value = field.value.get().value_or("");  // an alias is recorded by its first name
+    if (!field.recorded()) continue;                           // has no meaning beside the others of `base`
     Provenance record;
     record_fields(fields_of(changed), record);
     Settings read;

@@ -123,7 +123,7 @@ TEST_F(BadNormals, AreNamed) {
   expect_bad_normals("--normal-y up",
                      AllOf(StartsWith("--normal-y: "), HasSubstr("expected --normals FILE")));
   expect_bad_normals("--normals n.png --normal-y left",
-                     AllOf(StartsWith("--normal-y: 'left'"), HasSubstr("{up,down}")));
+                     AllOf(StartsWith("--normal-y: 'left'"), HasSubstr("{up,down,opengl,directx,gl,dx,auto}")));
   expect_bad_normals("--normals n.png --normal-y up --normals-from faces", StartsWith("--normals-from: "));
   expect_bad_normals("--normals none.png --normal-y up", StartsWith("none.png: No such file"));
   write_normals("wide.png", 17, 16, {0.5f, 0.5f, 1.0f});

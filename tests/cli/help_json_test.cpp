@@ -50,11 +50,11 @@ TEST(Help, SaysUnitsRangesAndDefaults) {
   const std::string help = run_hemibake("bake --help").standard_output;
   // Option, range, default; then its meaning and unit on the next line.
   for (const char* line :
-       {R"(--size FLOAT:in \(0 - 1000000000\]=1[^0-9])", R"(longer side, m)",
-        R"(--amplitude FLOAT:in \[0 - .*\]=0\.1)", R"(--cone FLOAT:in \(0 - 180\]=180)", "degrees",
+       {R"(--size FLOAT:in \(0 - 1000000000\])", R"(longer side, m; default: 1)",
+        R"(over 0, m; default: 0\.1)", R"(--cone FLOAT:in \(0 - 180\]=180)", "degrees",
         R"(--rays [^ ]*in \[1 - 1048576\])", R"(azimuths of slices per texel \(default 64\))",
-        R"(--bounces [^ ]*in \[0 - 1000\]=20)", R"(--edge TEXT:\{wrap,open\}=wrap)", "share of pi", "GiB",
-        "counts? as sky, m; default: no limit", R"(--threads [^ ]*in \[0 - 1024\]=0)"})
+        R"(--bounces [^ ]*in \[0 - 1000\]=20)", R"(--edge TEXT:\{wrap,open,ground\}=wrap)", "share of pi",
+        "GiB", "counts? as sky, m; default: no limit", R"(--threads [^ ]*in \[0 - 1024\]=0)"})
     EXPECT_THAT(help, ContainsRegex(line));
   EXPECT_THAT(run_hemibake("run --help").standard_output,
               ContainsRegex(R"(--bins [^ ]*in \[1 - 65536\]=100)"));

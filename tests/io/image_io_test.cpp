@@ -94,7 +94,7 @@ TEST_F(ImageIo, AlphaNeverTouchesTheOthers) {
     write_foreign(folder_ / name, spec, values);
     const auto expected = static_cast<float>(200 / 255.0);
     EXPECT_THAT(read_height_map(folder_ / name).values, testing::ElementsAre(expected, expected)) << name;
-    EXPECT_EQ(read_normal_map(folder_ / name, 2, 1)[1].y, expected) << name;
+    EXPECT_EQ(read_normal_map(folder_ / name, 2, 1).values[1].y, expected) << name;
   }
   write_foreign(folder_ / "a.exr", spec_of(1, 1, {"R", "G", "B", "A"}), std::vector<float>{1, 2, 3, 0.25f});
   EXPECT_EQ(read_height_map(folder_ / "a.exr")[0], 2);
@@ -144,7 +144,7 @@ TEST_F(ImageIo, ChannelChoice) {
 TEST_F(ImageIo, NormalMapSizeAndChannels) {
   write_foreign(folder_ / "n.png", spec_of(2, 1, {"R", "G", "B"}),
                 std::vector<uint8_t>{0, 51, 102, 153, 204, 255});
-  const Grid<glm::vec3> normals = read_normal_map(folder_ / "n.png", 2, 1);
+  const Grid<glm::vec3> normals = read_normal_map(folder_ / "n.png", 2, 1).values;
   EXPECT_EQ(normals[0], glm::vec3(0, 0.2f, 0.4f));
   EXPECT_EQ(normals[1], glm::vec3(0.6f, 0.8f, 1));
   const auto refusal_of = [&](const char* name, int width, int height) {
@@ -214,7 +214,7 @@ TEST_F(ImageIo, PicturesAreClampedAndRounded) {
   picture[0] = {-1, 0.5f, 2};
   picture[1] = {0.2f, 0.4f, 0.6f};
   write_png8_rgb(folder_ / "p.png", picture, {{"version", "0"}});
-  const Grid<glm::vec3> read = read_normal_map(folder_ / "p.png", 2, 1);
+  const Grid<glm::vec3> read = read_normal_map(folder_ / "p.png", 2, 1).values;
   EXPECT_EQ(read[0], glm::vec3(0, static_cast<float>(128 / 255.0), 1));
   EXPECT_EQ(read[1], picture[1]);
   picture[1].z = NAN;

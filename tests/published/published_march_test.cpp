@@ -37,7 +37,7 @@ class PublishedMarch : public testing::Test {
     for (const char* name : {"WallHeight.png", "WallNormal.png", "published_curves.csv"})
       if (!fs::exists(folder / name)) GTEST_SKIP() << folder / name << " is not there";
     heights_ = read_height_map(folder / "WallHeight.png");
-    encoded_normals_ = read_normal_map(folder / "WallNormal.png", heights_.width, heights_.height);
+    encoded_normals_ = read_normal_map(folder / "WallNormal.png", heights_.width, heights_.height).values;
     published_ = read_curves(folder / "published_curves.csv");
   }
 
@@ -47,7 +47,7 @@ class PublishedMarch : public testing::Test {
     options.amplitude_m = kAmplitude;
     options.lowest_m = kAmplitude * *std::min_element(filtered.values.begin(), filtered.values.end());
     Surface surface = make_surface(std::move(filtered), 1, kAmplitude, Edge::kWrap);
-    surface.normals = decode_normal_map(encoded_normals_, NormalY::kUp);
+    surface.normals = decode_normal_map(encoded_normals_, {.y = NormalY::kUp});
     const auto tracer = make_march_tracer(surface, options);
     const LightTransport transport = trace_surface(*tracer, true);
     BounceOptions bounces;
@@ -62,7 +62,7 @@ class PublishedMarch : public testing::Test {
 
   MarchOptions preset() const {
     MarchOptions options = mayaux2018_march();
-    options.normal_lengths = normal_map_lengths(encoded_normals_);
+    options.normal_lengths = normal_map_lengths(encoded_normals_, {.y = NormalY::kUp});
     return options;
   }
 

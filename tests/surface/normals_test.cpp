@@ -91,13 +91,13 @@ Grid<glm::vec3> encoded(glm::dvec3 normal) { return Grid<glm::vec3>(1, 1, glm::v
 
 TEST(DecodeNormalMap, TakesGreenAsTold) {
   const glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, 0.4, 0.8));
-  expect_near(decode_normal_map(encoded(normal), NormalY::kDown)[0], normal, kFloatRounding);
-  expect_near(decode_normal_map(encoded(normal), NormalY::kUp)[0], {normal.x, -normal.y, normal.z},
+  expect_near(decode_normal_map(encoded(normal), {.y = NormalY::kDown})[0], normal, kFloatRounding);
+  expect_near(decode_normal_map(encoded(normal), {.y = NormalY::kUp})[0], {normal.x, -normal.y, normal.z},
               kFloatRounding);
 }
 
 TEST(DecodeNormalMap, MakesUnitLength) {
-  expect_near(decode_normal_map(encoded({0.1, 0.0, 0.2}), NormalY::kDown)[0],
+  expect_near(decode_normal_map(encoded({0.1, 0.0, 0.2}), {.y = NormalY::kDown})[0],
               glm::normalize(glm::dvec3(0.1, 0, 0.2)), 10 * kFloatRounding);
 }
 
@@ -110,12 +110,50 @@ TEST(DecodeNormalMap, RefusesWhatIsNoNormalAndNamesTheTexel) {
     Grid<glm::vec3> map(3, 2, glm::vec3(0.5f, 0.5f, 1));
     map(2, 1) = bad;
     try {
-      decode_normal_map(map, NormalY::kUp);
+      decode_normal_map(map, {.y = NormalY::kUp});
       ADD_FAILURE() << "accepted " << bad.x << ", " << bad.y << ", " << bad.z;
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr("texel 2,1"));
     }
   }
+}
+
+TEST(DecodeNormalMap, TakesSignedNormalsOfUnitLengthBitForBit) {
+  const glm::vec3 normal(glm::normalize(glm::dvec3(0.3, -0.4, 0.8)));
+  EXPECT_EQ(decode_normal_map(Grid<glm::vec3>(1, 1, normal), {.encoding = NormalEncoding::kSigned})[0],
+            normal);
+  expect_near(
+      decode_normal_map(Grid<glm::vec3>(1, 1, 3.0f * normal), {.encoding = NormalEncoding::kSigned})[0],
+      normal, kFloatRounding);
+}
+
+TEST(DecodeNormalMap, MakesZAndUndoesSigns) {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, -0.4, 0.8));
+  Grid<glm::vec3> two = encoded({-normal.x, normal.y, -1});
+  expect_near(decode_normal_map(two, {.negated = {true, false, false}, .has_z = false})[0], normal,
+              10 * kFloatRounding);
+  // Codecs of two channels leave vectors a little too long.
+  const glm::vec3 flat = decode_normal_map(encoded({0.8, 0.65, 0}), {.has_z = false})[0];
+  EXPECT_GT(flat.z, 0);
+}
+
+TEST(CompareSlopes, IsOneForTheSameAndMinusOneForTheOtherSign) {
+  const Surface bumps =
+      surface_of(16, 12, Edge::kWrap, [](int x, int y) { return std::sin(x * 0.7) + std::cos(y * 1.3 + x); });
+  Grid<glm::vec3> flipped = bumps.normals;
+  for (glm::vec3& n : flipped.values) n.y = -n.y;
+  const SlopeAgreement same = compare_slopes(bumps.normals, bumps.normals);
+  EXPECT_NEAR(*same.x, 1, 1e-12);
+  EXPECT_NEAR(*same.y, 1, 1e-12);
+  EXPECT_NEAR(*same.slope_ratio, 1, 1e-12);
+  EXPECT_NEAR(*compare_slopes(flipped, bumps.normals).y, -1, 1e-12);
+  // Slopes three times as large are three times as large, however steep.
+  Grid<glm::vec3> steeper = bumps.normals;
+  for (glm::vec3& n : steeper.values) n = glm::normalize(glm::vec3(3 * n.x, 3 * n.y, n.z));
+  EXPECT_NEAR(*compare_slopes(steeper, bumps.normals).slope_ratio, 3, 1e-5);
+  const SlopeAgreement flat = compare_slopes(Grid<glm::vec3>(16, 12, glm::vec3(0, 0, 1)), bumps.normals);
+  EXPECT_FALSE(flat.x || flat.y);
+  EXPECT_EQ(*flat.slope_ratio, 0);
 }
 
 }  // namespace

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "cli/print/map.h"
 #include "core/constants.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
@@ -14,7 +16,6 @@ namespace hemibake {
 namespace {
 
 constexpr double kGib = 1024.0 * 1024 * 1024;
-constexpr std::array kEdgeNames = {"wrap", "open", "ground"};
 constexpr size_t kTexelsNamed = 5;  // of those that did not converge
 
 double mean_of(const Grid<float>& plane) { return mean(std::span<const float>(plane.values)); }
@@ -112,14 +113,17 @@ std::string line_of_bake(const MapSettings& map, const BakeResult& result,
   return text + fmt::format(", {:.1f} s: {}", result.seconds, output.string());
 }
 
-std::string describe_bake(const BakeOptions& options, const BakeResult& result) {
+std::string describe_bake(const LoadedMap& map, const BakeResult& result) {
   const Bake& bake = result.planes;
-  const MapSettings& map = options.map;
+  const MapSettings& settings = map.settings;
   const double million_rays = 1e-6 * static_cast<double>(result.counts.rays);
-  std::string text = fmt::format("{}: {}x{} texels, {:g} m, amplitude {:g} m, {} edges, {} patches\n",
-                                 map.map.string(), bake.width, bake.height, map.size_m, map.amplitude_m,
-                                 kEdgeNames.at(static_cast<size_t>(map.edge)),
+  std::string text = fmt::format("{}: {}x{} texels, {:g} m, {}, {} patches\n", settings.map.string(),
+                                 bake.width, bake.height, *settings.size_m,
+                                 settings.heights == HeightUnit::kMetres
+                                     ? "heights in metres"
+                                     : fmt::format("amplitude {:g} m", *settings.amplitude_m),
                                  result.settings.patch_kind == PatchKind::kFacets ? "facets" : "texels");
+  text += describe_map(map);
   text += fmt::format("rays      {:.1f} M in {:.1f} s ({:.1f} cpu-s, {:.2f} Mray/cpu-s)", million_rays,
                       result.seconds, result.cpu_seconds, million_rays / result.trace_cpu_seconds);
   if (result.energy) text += fmt::format(", {:.1f} M links", 1e-6 * static_cast<double>(result.links));
@@ -152,8 +156,10 @@ std::string describe_bake(const BakeOptions& options, const BakeResult& result) 
   return text;
 }
 
-nlohmann::ordered_json json_from_bake(const BakeResult& result, const Provenance& provenance) {
+nlohmann::ordered_json json_from_bake(const LoadedMap& map, const BakeResult& result,
+                                      const Provenance& provenance) {
   nlohmann::ordered_json json = provenance;
+  json["map"] = json_from_map(map);
   json["width"] = result.planes.width;
   json["height"] = result.planes.height;
   json["seconds"] = result.seconds;
@@ -170,7 +176,9 @@ nlohmann::ordered_json json_from_bake(const BakeResult& result, const Provenance
     json["mean_total_over_pi"] = mean_of(result.planes.total) / kPi;
   }
   if (result.choice) json["choice"] = json_from_choice(*result.choice);
-  json["warnings"] = warnings_of(result);
+  std::vector<std::string> warnings = warnings_of(map);
+  std::ranges::copy(warnings_of(result), std::back_inserter(warnings));
+  json["warnings"] = warnings;
   return json;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "cli/options/bake_options.h"
+#include "bake/load.h"
 #include "io/provenance.h"
 
 namespace hemibake {
@@ -18,9 +18,10 @@ std::vector<std::string> warnings_of(const BakeResult& result);
 std::string line_of_bake(const MapSettings& map, const BakeResult& result,
                          const std::filesystem::path& output);
 
-std::string describe_bake(const BakeOptions& options, const BakeResult& result);
+std::string describe_bake(const LoadedMap& map, const BakeResult& result);
 // provenance: as record_of (bake/record.h).
-nlohmann::ordered_json json_from_bake(const BakeResult& result, const Provenance& provenance);
+nlohmann::ordered_json json_from_bake(const LoadedMap& map, const BakeResult& result,
+                                      const Provenance& provenance);
 
 std::string describe_plan(const PreparedBake& prepared);
 nlohmann::ordered_json json_from_plan(const BakePlan& plan);

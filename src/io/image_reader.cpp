@@ -1,0 +1,264 @@
+#include "io/image_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numeric>
+
+#include "core/context.h"
+#include "core/parallel.h"
+#include "io/png_check.h"
+#include "surface/surface.h"
+
+namespace hemibake {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Values (texels × channels) read at a time: a few MB, some compression blocks for the threads.
+constexpr int64_t kValuesPerBlock = int64_t{1} << 21;
+constexpr int kMaxRowsPerBlock = 64;
+constexpr int kMaxParts = 10000;
+// Resolutions are rounded to whole pixels per metre: less than this is rounding.
+constexpr double kLeastAspect = 1e-3;
+
+// Joins the lines of a message of OpenImageIO.
+std::string one_line(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+void check_regular_file(const ChannelReader& reader) {
+  std::error_code error;
+  const fs::file_status status = fs::status(reader.path(), error);
+  if (!fs::exists(status)) reader.refuse(error.message() + ", expected an image");
+  if (fs::is_directory(status)) reader.refuse("is a folder, expected an image");
+  if (!fs::is_regular_file(status)) reader.refuse("is not a regular file, expected an image");
+  if (fs::file_size(reader.path(), error) == 0 && !error) reader.refuse("is empty, expected an image");
+}
+
+void check_usable(const ChannelReader& reader, const OIIO::ImageSpec& spec) {
+  const auto texels =
+      static_cast<uint64_t>(std::max(0, spec.width)) * static_cast<uint64_t>(std::max(0, spec.height));
+  if (texels == 0 || spec.nchannels < 1)
+    reader.refuse(fmt::format("holds {} x {} texels, expected at least one", spec.width, spec.height));
+  if (texels > kMaxTexels)
+    reader.refuse(
+        fmt::format("claims {} x {} texels, expected at most {}", spec.width, spec.height, kMaxTexels));
+  if (spec.deep) reader.refuse("is a deep image, expected one value per texel and channel");
+  if (spec.depth > 1)
+    reader.refuse(fmt::format("is a volume of {} slices, expected a flat image", spec.depth));
+}
+
+void check_windows(const ChannelReader& reader, const OIIO::ImageSpec& spec, const ImageChoice& choice) {
+  if (choice.window == ImageWindow::kData) return;
+  if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
+      spec.height != spec.full_height)
+    reader.refuse(
+        fmt::format("has a data window of {} x {} at ({}, {}) in a display window of {} x {} at ({}, {}), "
+                    "expected the same window for both{}",
+                    spec.width, spec.height, spec.x, spec.y, spec.full_width, spec.full_height, spec.full_x,
+                    spec.full_y, choice.is_offered ? ", or --window data" : ""));
+}
+
+// Refuses TIFFs that OpenImageIO 2.4 reads wrongly without an error (tiffinput.cpp: unusual depths stay in a
+// scratch buffer, and only 8-bit values are inverted).
+void check_tiff(const ChannelReader& reader, const OIIO::ImageSpec& spec) {
+  const int bits = spec.get_int_attribute("oiio:BitsPerSample");
+  if (spec.format.is_floating_point() && bits != 16 && bits != 32)
+    reader.refuse(fmt::format("holds {}-bit floats, which cannot be read, expected 32-bit floats", bits));
+  constexpr int kMinIsWhite = 0;
+  if (spec.get_int_attribute("tiff:PhotometricInterpretation", 1) == kMinIsWhite &&
+      spec.format != OIIO::TypeDesc::UINT8)
+    reader.refuse("stores white as the least value in more than 8 bits, expected black there");
+}
+
+std::unique_ptr<OIIO::ImageInput> open_image(const ChannelReader& reader) {
+  OIIO::ImageSpec hints;
+  hints.attribute("oiio:UnassociatedAlpha", 1);
+  auto input = OIIO::ImageInput::open(reader.path().string(), &hints);
+  if (!input) reader.refuse(fmt::format("is not an image that can be read ({})", one_line(OIIO::geterror())));
+  return input;
+}
+
+// Counts with a reader of its own: seeking an image that is not there leaves some readers with an error.
+int count_images(const ChannelReader& reader) {
+  const auto input = open_image(reader);
+  int count = 1;
+  while (count < kMaxParts && input->seek_subimage(count, 0)) ++count;
+  input->geterror();  // clears the error of seeking
+  return count;
+}
+
+std::string format_name_of(const std::string& name) {
+  static const std::map<std::string, std::string> names{
+      {"openexr", "OpenEXR"}, {"webp", "WebP"},           {"hdr", "Radiance HDR"}, {"jpeg2000", "JPEG 2000"},
+      {"targa", "TGA"},       {"softimage", "Softimage"}, {"cineon", "Cineon"}};
+  if (const auto found = names.find(name); found != names.end()) return found->second;
+  std::string upper = name;
+  std::ranges::transform(upper, upper.begin(), [](unsigned char c) { return std::toupper(c); });
+  return upper;
+}
+
+// Returns the bits of an integer as stored: 12 for what is widened to 16. Palettes index whole colours.
+int integer_bits(const OIIO::ImageSpec& spec, const std::string& format) {
+  const int bits = spec.get_int_attribute("oiio:BitsPerSample");
+  const auto most = static_cast<int>(spec.format.size() * 8);
+  constexpr int kPalette = 3;
+  const bool is_trusted =
+      format != "png" && spec.get_int_attribute("tiff:PhotometricInterpretation", 1) != kPalette;
+  return is_trusted && bits > 1 && bits < most ? bits : most;
+}
+
+void note_samples(const OIIO::ImageSpec& spec, const std::string& format, ChannelFacts& facts) {
+  if (spec.format.is_floating_point()) {
+    facts.sample_type = spec.format == OIIO::TypeDesc::HALF
+                            ? "half floats"
+                            : fmt::format("{}-bit floats", spec.format.size() * 8);
+    return;
+  }
+  const bool is_signed = spec.format.is_signed();
+  const int bits = integer_bits(spec, format);
+  facts.sample_type = fmt::format("{}{}-bit integers", is_signed ? "signed " : "", bits);
+  facts.full_scale = std::ldexp(1.0, is_signed ? bits - 1 : bits) - 1;
+}
+
+// Returns width over height of a texel. OpenImageIO's PixelAspectRatio is that in EXR, and elsewhere one or
+// the other; resolutions are texels per length.
+double pixel_aspect_of(const OIIO::ImageSpec& spec, const std::string& format) {
+  const double x = spec.get_float_attribute("XResolution"), y = spec.get_float_attribute("YResolution");
+  const double aspect = format == "openexr" ? spec.get_float_attribute("PixelAspectRatio", 1) : y / x;
+  return std::isfinite(aspect) && aspect > 0 && std::abs(aspect - 1) > kLeastAspect ? aspect : 1;
+}
+
+}  // namespace
+
+ImageReader::ImageReader(const fs::path& path, const ImageChoice& choice) : ChannelReader(path) {
+  check_regular_file(*this);
+  if (const std::string fault = png_error(path); !fault.empty()) refuse(fault);
+  OIIO::attribute("threads", thread_count());
+  OIIO::attribute("exr_threads", thread_count());
+  input_ = open_image(*this);
+  const std::string format = input_->format_name();
+  const std::vector<TiffPage> pages = format == "tiff" ? tiff_pages(path) : std::vector<TiffPage>();
+  check_usable(*this, input_->spec());
+  subimage_ = find_part(choice, pages);
+  if (subimage_ != 0 && !input_->seek_subimage(subimage_, 0))
+    refuse(fmt::format("has an image {} that cannot be read ({})", subimage_, one_line(input_->geterror())));
+  spec_ = input_->spec();
+  check_usable(*this, spec_);
+  if (format == "openexr") check_windows(*this, spec_, choice);
+  if (format == "tiff") check_tiff(*this, spec_);
+  note_facts(pages);
+  if (format == "webp" && facts_.alpha) check_binary_alpha();
+}
+
+// Refuses partial transparency: OpenImageIO 2.4 multiplies the colours of a WebP by alpha, whatever it is
+// told.
+void ImageReader::check_binary_alpha() {
+  bool is_partial = false, is_seen = false;
+  read(*facts_.alpha, *facts_.alpha + 1, [&](size_t, std::span<const float> values) {
+    for (const float alpha : values) {
+      is_partial = is_partial || (alpha != 0 && alpha != 1);
+      is_seen = is_seen || alpha != 0;
+    }
+  });
+  if (is_partial || !is_seen)
+    refuse(
+        "is a WebP with partial or no opacity, which loses its values in reading, expected it opaque, or as "
+        "PNG");
+}
+
+// Returns the subimage that is read: overviews and masks are none of their own.
+int ImageReader::find_part(const ImageChoice& choice, const std::vector<TiffPage>& pages) const {
+  std::vector<int> whole;
+  for (size_t i = 0; i < pages.size(); ++i)
+    if (!pages[i].is_reduced && !pages[i].is_mask) whole.push_back(static_cast<int>(i));
+  if (whole.empty()) {
+    whole.resize(static_cast<size_t>(count_images(*this)));
+    std::iota(whole.begin(), whole.end(), 0);
+  }
+  if (!choice.part && whole.size() > 1)
+    refuse(fmt::format("holds {} images, expected one{}", whole.size(),
+                       choice.is_offered ? fmt::format(", or --part 0 to {}", whole.size() - 1) : ""));
+  const auto part = static_cast<size_t>(choice.part.value_or(0));
+  if (part >= whole.size())
+    refuse(fmt::format("holds {} image(s), counted from 0, expected one of them, not --part {}", whole.size(),
+                       part));
+  return whole[part];
+}
+
+void ImageReader::note_facts(const std::vector<TiffPage>& pages) {
+  const std::string format = input_->format_name();
+  facts_.width = spec_.width;
+  facts_.height = spec_.height;
+  facts_.channels = spec_.channelnames;
+  if (spec_.alpha_channel >= 0) facts_.alpha = spec_.alpha_channel;
+  facts_.format = format_name_of(format);
+  note_samples(spec_, format, facts_);
+  const int orientation =
+      format == "webp" ? webp_orientation(path()) : spec_.get_int_attribute("Orientation", 1);
+  facts_.orientation = orientation >= 1 && orientation <= 8 ? orientation : 1;
+  facts_.pixel_aspect = pixel_aspect_of(spec_, format);
+  if (facts_.orientation > 4) facts_.pixel_aspect = 1 / facts_.pixel_aspect;
+  if (static_cast<size_t>(subimage_) < pages.size())
+    facts_.no_data = pages[static_cast<size_t>(subimage_)].no_data;
+}
+
+bool ImageReader::read_rows(const Window& window, OIIO::TypeDesc type, void* values) {
+  const int top = spec_.y + window.row_begin, bottom = spec_.y + window.row_end;
+  if (spec_.tile_width > 0)
+    return input_->read_tiles(subimage_, 0, spec_.x, spec_.x + spec_.width, top, bottom, spec_.z, spec_.z + 1,
+                              window.channel_begin, window.channel_end, type, values);
+  return input_->read_scanlines(subimage_, 0, top, bottom, spec_.z, window.channel_begin, window.channel_end,
+                                type, values);
+}
+
+void ImageReader::read(int begin, int end, const BlockVisitor& visit) {
+  const int channels = end - begin;
+  const int rows = spec_.tile_width > 0
+                       ? spec_.tile_height
+                       : static_cast<int>(std::clamp<int64_t>(
+                             kValuesPerBlock / (int64_t{spec_.width} * channels), 1, kMaxRowsPerBlock));
+  const size_t row_values = static_cast<size_t>(spec_.width) * static_cast<size_t>(channels);
+  // 8 bits widen to 16 exactly (v · 257), so that one division gives the nearest float for both.
+  const bool integers = spec_.format == OIIO::TypeDesc::UINT8 || spec_.format == OIIO::TypeDesc::UINT16;
+  std::vector<float> block(static_cast<size_t>(rows) * row_values);
+  std::vector<uint16_t> stored(integers ? block.size() : 0);
+  for (int row = 0; row < spec_.height; row += rows) {
+    throw_if_cancelled();
+    const Window window{row, std::min(spec_.height, row + rows), begin, end};
+    const bool is_read = integers ? read_rows(window, OIIO::TypeDesc::UINT16, stored.data())
+                                  : read_rows(window, OIIO::TypeDesc::FLOAT, block.data());
+    if (!is_read || input_->has_error())
+      refuse(fmt::format("cannot be read from row {} on, it may be cut short ({})", row,
+                         one_line(input_->geterror())));
+    const size_t count = static_cast<size_t>(window.row_end - row) * row_values;
+    for (size_t i = 0; i < (integers ? count : 0); ++i) block[i] = static_cast<float>(stored[i] / 65535.0);
+    visit(static_cast<size_t>(row) * static_cast<size_t>(spec_.width), std::span(block).first(count));
+  }
+}
+
+void ImageReader::fill(std::span<const MutablePlane> planes, std::span<const int> indices) {
+  const auto [low, high] = std::minmax_element(indices.begin(), indices.end());
+  const int begin = *low;
+  const auto channels = static_cast<size_t>(*high + 1 - begin);
+  read(begin, *high + 1, [&](size_t first, std::span<const float> values) {
+    for (size_t k = 0; k < planes.size(); ++k) {
+      const auto offset = static_cast<size_t>(indices[k] - begin);
+      for (size_t i = 0; i < values.size() / channels; ++i) {
+        const size_t texel = upright(first + i);
+        const float value = values[i * channels + offset];
+        if (!std::isfinite(value)) refuse_value(*this, planes[k].channel, texel, value);
+        planes[k].first[texel * planes[k].stride] = value;
+      }
+    }
+  });
+}
+
+}  // namespace hemibake
