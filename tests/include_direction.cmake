@@ -4,7 +4,7 @@ cmake_policy(VERSION 3.25)
 
 # The rooms of src/ from the top down: a room includes itself and those after it. The names of files right in src/
 # stand for themselves.
-set(order main cli python hemibake report pictures trade lighting textures bake io fitting model curves reference
+set(order main cli python hemibake report pictures trade lighting textures terrain bake io fitting model curves reference
           estimators transport tracers surface sampling core)
 # Rooms that may not include all below them, and what they may not.
 set(forbidden_pairs "cli>python" "estimators>transport" "estimators>tracers")

@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "bake/crop.h"
 #include "bake/make_tracer.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -124,6 +125,7 @@ void keep_planes(const Surface& surface, LightTransport& transport, BakeResult& 
 
 PreparedBake prepare_bake(const LoadedMap& map, const BakeSettings& settings, MemoryLimit limit) {
   PreparedBake prepared;
+  check_margin(settings.margin, map.surface.width(), map.surface.height());
   prepared.map = &map;
   prepared.settings = settings;
   const bool enforced = settings.limit_memory && limit == MemoryLimit::kEnforced;
@@ -159,6 +161,7 @@ BakeResult bake(const PreparedBake& prepared) {
   result.errors = errors_of(prepared, transport, result.bounces);
   result.reached = reached_errors(prepared, transport);
   keep_planes(prepared.map->surface, transport, result);
+  crop_bake(prepared.settings.margin, result);
   if (prepared.settings.keep_transport) result.transport = std::move(transport);
 
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

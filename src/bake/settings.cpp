@@ -88,6 +88,20 @@ void validate_target_error(const BakeSettings& settings, const IsGiven& given) {
           fmt::format("{{{}}}: is chosen by {{target-error}}, expected one of the two", chosen));
 }
 
+void validate_edge(const MapSettings& map, const BakeSettings& settings) {
+  if (settings.margin > 0 && map.edge == Edge::kWrap)
+    throw SettingError("{margin}: a map that repeats has no ring around it, expected {edge} open or ground");
+  if (settings.margin > 0 && settings.keep_transport)
+    throw SettingError("{margin}: links are between all texels, expected no {links} with it");
+  if (map.edge != Edge::kGround) return;
+  if (settings.tracer == TracerKind::kMarch)
+    throw SettingError(
+        "{edge}: a march knows no ground beyond the border, expected wrap or open with {tracer} march");
+  if (settings.max_distance_m)
+    throw SettingError(
+        "{max-distance}: ground beyond the border has no end, expected {edge} wrap or open with it");
+}
+
 void validate_tracer(const BakeSettings& settings) {
   if (settings.tracer == TracerKind::kMarch && settings.patch_kind == PatchKind::kFacets)
     throw SettingError("{patches}: a march knows no facets, expected texels with {tracer} march");
@@ -291,6 +305,7 @@ std::vector<Field> bake_fields(BakeSettings& s) {
   };
   const auto is_limited = [&s] { return s.max_distance_m.has_value(); };
   const auto converges = [&s] { return s.converge.has_value(); };
+  const auto has_margin = [&s] { return s.margin > 0; };
   const auto has_target = [&s] { return s.target_error.has_value(); };
   return {
       recorded("tracer", "tracer", "Tracing", choice(s.tracer, {"embree", "march", "slice"}),
@@ -346,6 +361,9 @@ std::vector<Field> bake_fields(BakeSettings& s) {
       when(converges, recorded("max-bounces", "max_bounces", "Light", whole(s.max_bounces, 1, kMaxBounces),
                                "where --converge gives up")),
 
+      when(has_margin, recorded("margin", "margin", "Surface", whole(s.margin, 0, 1 << 27),
+                                "ring of the map that only occludes: texels cropped off every side of the "
+                                "output; with --edge open or ground [0]")),
       with_default(
           when([&s] { return s.makes_bounce_plane(); },
                recorded("bounce-albedo", "bounce_albedo", "Light", number(s.bounce_albedo, 0.5, 0.99),
@@ -380,6 +398,7 @@ void resolve_defaults(MapSettings& map, BakeSettings& settings, const IsGiven& g
 void validate(const MapSettings& map, const BakeSettings& settings, const IsGiven& given) {
   validate_target_error(settings, given);
   validate_tracer(settings);
+  validate_edge(map, settings);
   validate_units(map, given);
   validate_normals(map, settings, given);
   if (settings.converge && !settings.wants(BakeOutput::kIrradiance))

@@ -70,6 +70,7 @@ struct BakeSettings {
   std::optional<double> target_error;      // chooses rays and bounces
   bool explain = false;
   uint64_t seed = 0;
+  int margin = 0;  // texels off every side of the planes: the ring only occludes
   // For the march only.
   int max_steps = 200;
   double lift_percent = 1;

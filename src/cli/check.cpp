@@ -21,6 +21,10 @@ struct CheckOptions {
 
 // Reads the bake's map again and measures the bake against it.
 RefereeCheck ask_referee(const BakeFile& file, const CheckOptions& options) {
+  if (recorded_bake_settings(file.provenance, options.file).margin > 0)
+    throw InputError(
+        options.file.string() +
+        ": is cropped by a margin, which the referee does not know, expected a bake without --margin");
   const LoadedMap map = load_map(recorded_map_settings(file.provenance, options.file));
   return with_file_context(options.file, [&] {
     return check_against_referee(map.surface, {file.bake.visible_fraction, file.bake.irradiance},

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "bake/bake.h"
+#include "bake/crop.h"
 #include "bake/record.h"
 #include "cli/batch.h"
 #include "cli/options/bake_options.h"
@@ -23,6 +24,7 @@
 #include "io/output_file.h"
 #include "textures/make_textures.h"
 #include "textures/planes.h"
+#include "textures/terrain_layers.h"
 
 namespace hemibake {
 namespace {
@@ -79,12 +81,33 @@ Provenance record_of_bake(const fs::path& bake, const Provenance& of_bake, std::
   return provenance;
 }
 
+// Makes the planes of terrain of a map, cropped as its bake.
+TerrainPlanes terrain_of(const Surface& surface, const fs::path& map, const TextureSettings& settings,
+                         int margin) {
+  const double longer_side_m = surface.texel_size_m * std::max(surface.width(), surface.height());
+  if (longer_side_m > kCurvedMapM && !settings.curvature)
+    print_warnings(map.string(),
+                   {fmt::format("is {:.3g} km long and taken for flat, --curvature lowers far terrain",
+                                longer_side_m / 1000)});
+  TerrainPlanes planes = make_terrain(surface, terrain_options(settings));
+  for (Grid<float>* plane : {&planes.svf, &planes.openness, &planes.negative_openness})
+    *plane = crop_plane(*plane, margin);
+  for (Grid<float>& plane : planes.horizons) plane = crop_plane(plane, margin);
+  return planes;
+}
+
 std::vector<WrittenTexture> textures_of_bake(const TexturesOptions& options, const std::string& name,
                                              const Invocation& invocation) {
   const BakeFile file = read_bake(options.map.map);
   const Provenance provenance = record_of_bake(options.map.map, file.provenance, invocation.context.command);
+  TerrainPlanes terrain;
+  if (options.textures.wants_terrain()) {
+    const MapSettings of_bake = recorded_map_settings(file.provenance, options.map.map);
+    terrain = terrain_of(load_map(of_bake).surface, of_bake.map, options.textures,
+                         recorded_bake_settings(file.provenance, options.map.map).margin);
+  }
   return with_file_context(options.map.map, [&] {
-    return make_textures(file.bake, provenance, options.textures, options.folder, name);
+    return make_textures({file.bake, terrain}, provenance, options.textures, options.folder, name);
   });
 }
 
@@ -119,11 +142,22 @@ LoadedMap load_map_to_bake(TexturesOptions& options, const Invocation& invocatio
 
 std::vector<WrittenTexture> textures_of_map(const TexturesOptions& options, const LoadedMap& map,
                                             const std::string& name, const Invocation& invocation) {
-  const BakeResult result =
-      with_file_context(options.map.map, [&] { return bake(map, options.bake, invocation.context); });
+  const int margin = options.bake.margin;
+  with_file_context(options.map.map,
+                    [&] { check_margin(margin, map.surface.width(), map.surface.height()); });
+  TerrainPlanes terrain;
+  if (options.textures.wants_terrain())
+    terrain = terrain_of(map.surface, options.map.map, options.textures, margin);
+  BakeResult result;
+  result.settings = options.bake;
+  result.texel_size_m = map.surface.texel_size_m;
+  result.planes.width = map.surface.width() - 2 * margin;
+  result.planes.height = map.surface.height() - 2 * margin;
+  if (options.textures.wants_bake())
+    result = with_file_context(options.map.map, [&] { return bake(map, options.bake, invocation.context); });
   print_warnings(options.map.map.string(), warnings_of(result));
-  return make_textures(result.planes, record_of(map, result, invocation.context.command), options.textures,
-                       options.folder, name);
+  return make_textures({result.planes, terrain}, record_of(map, result, invocation.context.command),
+                       options.textures, options.folder, name);
 }
 
 // Returns whether every texture is there as it would be made again. options: resolved.

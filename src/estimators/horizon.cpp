@@ -111,7 +111,7 @@ struct HorizonSearch {
 Estimate estimate_horizon(const Surface& surface, const HorizonOptions& options) {
   const double radius_m = options.radius_m > 0 ? options.radius_m : far_radius_m(surface);
   const HorizonSearch search{surface, options, radius_m / surface.texel_size_m,
-                             surface.edge == Edge::kWrap ? kPi / 2 : kPi};
+                             surface.edge == Edge::kOpen ? kPi : kPi / 2};
   Estimate estimate;
   estimate.kind = options.kind;
   estimate.ao = Grid<float>(surface.width(), surface.height());

@@ -26,7 +26,7 @@ struct HorizonOptions {
 };
 
 // Estimates AO of both kinds. Heights are those of the surface's triangles. Beyond the radius an endless map fills all
-// below the horizontal, and beyond an open edge is nothing. Bent normals: the mean direction of the sky seen.
+// below the horizontal, ground beyond the border does so too, and beyond an open edge is nothing. Bent normals: the mean direction of the sky seen.
 Estimate estimate_horizon(const Surface& surface, const HorizonOptions& options);
 
 }  // namespace hemibake

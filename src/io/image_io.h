@@ -103,11 +103,11 @@ struct TextureCoding {
   bool dither = false;  // 8 bits: rounds up with the probability of the remainder, which keeps the mean
 };
 
-// Writes planes of linear data, 0..1, into `file`, which stays to be committed. PNG is written to nearest, or
+// Writes planes of linear data (0..1; any finite number in float formats) into `file`, which stays to be committed. PNG is written to nearest, or
 // dithered with a hash of channel and texel: the same bytes at every run. No colour space is claimed: no gAMA
 // and no sRGB chunk. Metadata as write_image; a TIFF has the JSON as its ImageDescription. Throws
 // std::logic_error for a value outside 0..1 or not finite, InputError where the file cannot be written.
-// planes: 1, 3 or 4.
+// planes: 1, 3 or 4; any number in float formats.
 void write_texture(OutputFile& file, int width, int height, std::span<const Plane> planes,
                    const TextureCoding& coding, const Provenance& provenance);
 

@@ -138,7 +138,8 @@ class Writer {
       const size_t texels = static_cast<size_t>(end - begin) * width;
       for (size_t k = 0; k < planes.size(); ++k)
         for (size_t i = 0; i < texels; ++i)
-          block[i * planes.size() + k] = convert(planes[k].first[(first_texel + i) * planes[k].stride], k, first_texel + i);
+          block[i * planes.size() + k] =
+              convert(planes[k].first[(first_texel + i) * planes[k].stride], k, first_texel + i);
       if (!output_->write_scanlines(begin, end, 0, OIIO::BaseTypeFromC<Sample>::value, block.data())) fail();
     }
     const bool closed = output_->close();
@@ -245,11 +246,13 @@ const TextureFormatInfo& texture_format_info(TextureFormat format) {
 void write_texture(OutputFile& file, int width, int height, std::span<const Plane> planes,
                    const TextureCoding& coding, const Provenance& provenance) {
   if (width < 1 || height < 1 || planes.empty()) throw std::logic_error("a texture to write is empty");
+  const bool is_float = texture_format_info(coding.format).is_float;
   check_values(
-      width, height, planes, [](float value) { return value >= 0 && value <= 1; },
+      width, height, planes,
+      [&](float value) { return is_float ? std::isfinite(value) : value >= 0 && value <= 1; },
       [&](const std::string& what) {
-        throw std::logic_error(
-            fmt::format("internal check failed: {}: {}, expected 0..1", file.path().string(), what));
+        throw std::logic_error(fmt::format("internal check failed: {}: {}, expected {}", file.path().string(),
+                                           what, is_float ? "a finite number" : "0..1"));
       });
   if (coding.format == TextureFormat::kExr) return write_exr(file, width, height, planes, provenance);
   const OIIO::ImageSpec spec = make_spec(width, height, planes, OIIO::TypeDesc::UINT16, provenance);

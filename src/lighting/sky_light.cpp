@@ -52,7 +52,7 @@ SurfacePoint surface_over(const Surface& surface, const HeightFieldRayCaster& ca
 bool sky_visible(const HeightFieldRayCaster& caster, const SurfacePoint& from, double lift,
                  const glm::dvec3& direction) {
   SurfacePoint hit;
-  return caster.cast(from.position + glm::dvec3(0, 0, lift), direction, hit) != RayOutcome::kHit;
+  return reaches_sky(caster.cast(from.position + glm::dvec3(0, 0, lift), direction, hit));
 }
 
 template <class Rays, class Start>

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/statistics.h"
+#include "reference/path_step.h"
 #include "reference/random.h"
 #include "reference/ray_caster.h"
 
@@ -47,9 +48,9 @@ glm::dvec3 path_light(const HeightFieldRayCaster& caster, const RefereeLighting&
                       SurfacePoint at, double lift, RefereeRandom& random) {
   glm::dvec3 share(1);
   for (;;) {
-    const glm::dvec3 direction = random_cosine_direction(at.normal, random);
-    const glm::dvec3 start(at.position.x, at.position.y, at.position.z + lift);
-    if (caster.cast(start, direction, at) != RayOutcome::kHit) return share * lighting.sky(direction);
+    const PathStep step = step_path(caster, at, lift, random);
+    if (reaches_sky(step.outcome)) return share * lighting.sky(step.direction);
+    at = step.hit;
     const glm::dvec3 albedo = albedo_at(lighting.albedo, edge, at.position.x, at.position.y);
     const double survival = std::max({albedo.r, albedo.g, albedo.b});
     if (survival == 0 || (survival < 1 && random.uniform() >= survival)) return glm::dvec3(0);

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/statistics.h"
+#include "reference/path_step.h"
 #include "reference/random.h"
 #include "reference/ray_caster.h"
 
@@ -96,11 +97,11 @@ class PathTracer {
 
   // Casts a ray of the path on. Returns whether it hits.
   bool trace_on(const SurfacePoint& from, RefereeRandom& random, SurfacePoint& hit, RayCounts& counts) const {
-    const glm::dvec3 start(from.position.x, from.position.y, from.position.z + lift_);
-    const RayOutcome end = caster_.cast(start, random_cosine_direction(from.normal, random), hit);
-    ++counts.rays;
-    counts.truncated += end == RayOutcome::kTruncated;
-    return end == RayOutcome::kHit;
+    const PathStep step = step_path(caster_, from, lift_, random);
+    hit = step.hit;
+    counts.rays += step.rays;
+    counts.truncated += step.outcome == RayOutcome::kTruncated;
+    return step.outcome == RayOutcome::kHit;
   }
 
   static void resample(std::span<const Path> survivors, RefereeRandom& random, Group& group) {
@@ -229,7 +230,7 @@ std::vector<double> referee_visible_fractions(const Surface& surface, std::span<
             uniform_direction(receiver.normal, (cell / side + random.uniform()) / side,
                               (cell % side + random.uniform()) / side);
         SurfacePoint hit;
-        visible += caster.cast(start, direction, hit) != RayOutcome::kHit;
+        visible += reaches_sky(caster.cast(start, direction, hit));
       }
       fractions[i] = static_cast<double>(visible) / (side * side);
     }

@@ -20,6 +20,9 @@
 // between groups. After the last bounce measured by itself, paths go on without splitting, ended by Russian
 // roulette at the largest albedo that a total still needs.
 //
+// Ground beyond the border (Edge::kGround) looks as what else of the surface is seen from the same point
+// (path_step.h).
+//
 // Results have the same bytes at any thread count.
 #pragma once
 

@@ -192,9 +192,11 @@ RayOutcome HeightFieldRayCaster::cast(const glm::dvec3& start, const glm::dvec3&
       hit.position.y = std::clamp(hit.position.y, 1.0 * cell.y, cell.y + 1.0);
       return RayOutcome::kHit;
     }
-    if (leave >= ray.end) return RayOutcome::kEscaped;
+    const RayOutcome beyond =
+        surface_.edge == Edge::kGround && ray.dz_m < 0 ? RayOutcome::kGround : RayOutcome::kEscaped;
+    if (leave >= ray.end) return beyond;
     t = leave;
-    if (!enter_next(block, leave_x <= leave_y, t, ray, cell)) return RayOutcome::kEscaped;
+    if (!enter_next(block, leave_x <= leave_y, t, ray, cell)) return beyond;
   }
   return RayOutcome::kTruncated;
 }

@@ -36,7 +36,7 @@ class HeightFieldRayCaster {
   // surface: must outlive the caster.
   explicit HeightFieldRayCaster(const Surface& surface);
 
-  // Casts a ray to the first point of the surface.
+  // Casts a ray to the first point of the surface; kGround where it leaves a map with ground edges downwards.
   // start: on or above the surface and inside the map, texels.
   // direction: unit.
   // hit: set if the outcome is kHit: position wrapped into the map, normal of the facet.

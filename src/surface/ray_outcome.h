@@ -4,6 +4,12 @@
 namespace hemibake {
 
 // kEscaped: to the sky. kHit: on the surface. kTruncated: given up at a limit of the tracer, taken for sky.
-enum class RayOutcome { kEscaped, kHit, kTruncated };
+// kGround: to the level ground beyond the border (Edge::kGround).
+enum class RayOutcome { kEscaped, kHit, kTruncated, kGround };
+
+// Returns whether a ray counts as one to the sky.
+inline bool reaches_sky(RayOutcome outcome) {
+  return outcome == RayOutcome::kEscaped || outcome == RayOutcome::kTruncated;
+}
 
 }  // namespace hemibake

@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "textures/bounce_map.h"
 #include "textures/light.h"
+#include "textures/terrain_layers.h"
 
 namespace hemibake {
 namespace {
@@ -147,8 +148,7 @@ std::vector<Layer> make_layers(const Bake& bake, const TextureSettings& settings
       return encode_vectors(bake, *settings.normal_y, [&](size_t i) { return glm::dvec3(bake.normals[i]); });
     case TextureKind::kIrradiance:
       return irradiance_layers(bake, settings.albedo);
-    case TextureKind::kOrm:
-    case TextureKind::kMask:
+    default:
       break;
   }
   return packed_layers(bake, settings, kind, packed);
@@ -163,6 +163,7 @@ bool chooses_steps(const Bake& bake, const TextureSettings& settings, TextureKin
 }
 
 std::string describe_texture(const Bake& bake, const TextureSettings& settings, TextureKind kind) {
+  if (is_terrain(kind)) return describe_terrain_texture(settings, kind);
   const bool chosen = chooses_steps(bake, settings, kind);
   switch (kind) {
     case TextureKind::kVisibility:

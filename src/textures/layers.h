@@ -11,8 +11,8 @@
 namespace hemibake {
 
 struct Layer {
-  std::string channel;  // "Y", or "R", "G", "B", "A"
-  Grid<float> values;   // 0..1
+  std::string channel;  // "Y", or "R", "G", "B", "A", or of an azimuth
+  Grid<float> values;   // 0..1; degrees where the texture says so
 };
 
 // Maps of other origin that are packed beside the AO, of the bake's size, 0..1; empty where nothing is
@@ -25,7 +25,7 @@ struct PackedInputs {
 // has another size or a value outside 0..1.
 PackedInputs read_packed_inputs(const TextureSettings& settings, int width, int height);
 
-// Returns the channels of one texture. settings: resolved; the bake passes check_planes (planes.h).
+// Returns the channels of one texture of a bake. settings: resolved; the bake passes check_planes (planes.h).
 std::vector<Layer> make_layers(const Bake& bake, const TextureSettings& settings, TextureKind kind,
                                const PackedInputs& packed);
 

@@ -15,6 +15,7 @@
 #include "textures/layers.h"
 #include "textures/light.h"
 #include "textures/planes.h"
+#include "textures/terrain_layers.h"
 
 namespace hemibake {
 namespace {
@@ -33,7 +34,9 @@ Provenance record_texture(const Provenance& of_bake, const Bake& bake, const Tex
   for (const char* of_the_maker : {"input_path", "bake_input_path", "normals_path"}) p.erase(of_the_maker);
   record_texture_settings(settings, kind, p);
   p["holds"] = describe_texture(bake, settings, kind);
-  p["encoding"] = holds_vectors(kind) ? "linear, 0..1 for -1..1" : "linear, 0..1";
+  p["encoding"] = is_terrain(kind)      ? terrain_encoding(settings, kind)
+                  : holds_vectors(kind) ? "linear, 0..1 for -1..1"
+                                        : "linear, 0..1";
   if (holds_vectors(kind)) p["green"] = *settings.normal_y == NormalY::kUp ? "up" : "down";
   if (holds_bounce(settings, kind)) p["bounce_albedo"] = bounce_albedo_of(bake);
   if (kind == TextureKind::kIrradiance) p["albedo"] = fmt::format("{:g}", fmt::join(settings.albedo, ","));
@@ -63,7 +66,8 @@ bool completes_bounce_map(const TextureSettings& settings, TextureKind kind) {
 }
 
 ChannelRange range_of(const Layer& layer) {
-  ChannelRange range{layer.channel, 1, 0, 0};
+  const double first = layer.values[0];
+  ChannelRange range{layer.channel, first, 0, first};
   for (const float value : layer.values.values) {
     range.low = std::min(range.low, static_cast<double>(value));
     range.high = std::max(range.high, static_cast<double>(value));
@@ -87,12 +91,14 @@ void record_texture_settings(const TextureSettings& settings, TextureKind kind, 
   TextureSettings copy = settings;
   provenance["texture"] = texture_name(kind);
   record_fields(texture_fields(copy), provenance);
+  if (kind == TextureKind::kHorizon) provenance["horizon_azimuths"] = settings.horizon_azimuths;
 }
 
-std::vector<WrittenTexture> make_textures(const Bake& bake, const Provenance& provenance,
+std::vector<WrittenTexture> make_textures(const TextureSource& source, const Provenance& provenance,
                                           const TextureSettings& settings,
                                           const std::filesystem::path& folder, const std::string& name,
                                           const Grid<uint8_t>& holes) {
+  const Bake& bake = source.bake;
   check_planes(bake, settings);
   const PackedInputs packed = read_packed_inputs(settings, bake.width, bake.height);
   const std::vector<std::filesystem::path> paths = texture_paths(settings, folder, name);
@@ -101,7 +107,8 @@ std::vector<WrittenTexture> make_textures(const Bake& bake, const Provenance& pr
   std::vector<WrittenTexture> written;
   for (size_t t = 0; t < paths.size(); ++t) {
     const TextureKind kind = settings.kinds[t];
-    std::vector<Layer> layers = make_layers(bake, settings, kind, packed);
+    std::vector<Layer> layers = is_terrain(kind) ? terrain_layers(source.terrain, settings, kind)
+                                                 : make_layers(bake, settings, kind, packed);
     if (chooses_steps(bake, settings, kind)) store_chosen(*chosen, kind, layers);
     WrittenTexture texture{kind, paths[t], describe_texture(bake, settings, kind), {}, {}};
     if (completes_bounce_map(settings, kind)) texture.bounce_map = bounce_map_loss(bake);

@@ -11,8 +11,11 @@
 namespace hemibake {
 namespace {
 
-const std::vector<std::string> kNames = {"visibility", "ao",         "bounce", "bounce-map", "bent",
-                                         "normal",     "irradiance", "orm",    "mask"};
+const std::vector<std::string> kNames = {
+    "visibility",        "ao",      "bounce", "bounce-map", "bent", "normal", "irradiance", "svf", "openness",
+    "negative-openness", "horizon", "orm",    "mask"};
+
+constexpr int kMostHorizonAzimuths = 3600;
 
 std::vector<std::string> format_names() {
   std::vector<std::string> names;
@@ -40,6 +43,22 @@ Value joined_by_commas(Value value) {
   return value;
 }
 
+// Takes the number after "horizon:" out of the words.
+Value with_horizon_azimuths(Value value, int& azimuths) {
+  value.set = [set = std::move(value.set), &azimuths](std::vector<std::string> words) {
+    int wanted = azimuths;
+    const Value count = whole(wanted, 1, kMostHorizonAzimuths);
+    for (std::string& word : words)
+      if (word.starts_with("horizon:")) {
+        count.set({word.substr(8)});
+        word.resize(7);
+      }
+    set(words);
+    azimuths = wanted;
+  };
+  return value;
+}
+
 Field texture_field(std::string name, Value value, std::string help) {
   Field field;
   field.name = std::move(name);
@@ -54,6 +73,12 @@ Field texture_field(std::string name, Value value, std::string help) {
 // Keeps a field out of the record: what it sets is recorded otherwise, or differs from texture to texture.
 Field unrecorded(Field field) {
   field.key.clear();
+  return field;
+}
+
+// Records a field only where there are textures of terrain.
+Field of_terrain(Field field, const TextureSettings& settings) {
+  field.recorded = [&settings, get = field.value.get] { return settings.wants_terrain() && get(); };
   return field;
 }
 
@@ -112,6 +137,10 @@ void refuse_one_name_twice(const TextureSettings& settings) {
 
 bool TextureSettings::wants(TextureKind kind) const { return std::ranges::find(kinds, kind) != kinds.end(); }
 
+bool TextureSettings::wants_terrain() const { return std::ranges::any_of(kinds, is_terrain); }
+
+bool TextureSettings::wants_bake() const { return !std::ranges::all_of(kinds, is_terrain); }
+
 const std::string& texture_name(TextureKind kind) { return kNames.at(static_cast<size_t>(kind)); }
 
 std::vector<Field> texture_fields(TextureSettings& s) {
@@ -121,10 +150,11 @@ std::vector<Field> texture_fields(TextureSettings& s) {
   Value suffixes = texts(s.suffix_words);
   return {
       unrecorded(texture_field(
-          "maps", joined_by_commas(choices(s.kinds, unpacked)),
+          "maps", joined_by_commas(with_horizon_azimuths(choices(s.kinds, unpacked), s.horizon_azimuths)),
           "separated by commas; default: visibility (unless packed), bent, normal. Engines mean "
           "visibility (cosine-weighted) by AO; ao is the uniform fraction; bounce is visibility with all "
-          "bounces at one albedo; bounce-map has both, in R and G")),
+          "bounces at one albedo; bounce-map has both, in R and G. Of terrain: svf (sky-view factor of "
+          "horizontal ground), openness, negative-openness, horizon:N (elevations at N azimuths)")),
       unrecorded(
           texture_field("engine", choice(s.engine, {"substance", "unreal", "unity", "godot", "gltf"}),
                         "suffixes, green channel and packing as it takes them; options given too win")),
@@ -139,6 +169,18 @@ std::vector<Field> texture_fields(TextureSettings& s) {
                     "of the bent normal B: 1; such that normal . B is the visibility; or the uniform AO"),
       shown_as(texture_field("albedo", joined_by_commas(albedo), "of irradiance: one number 0..1, or R,G,B"),
                "RHO[,G,B]"),
+      of_terrain(
+          texture_field("azimuths", whole(s.azimuths, 1, 65536), "of svf, openness and negative-openness"),
+          s),
+      of_terrain(shown_as(texture_field("radius", positive(s.radius_m, 1e30),
+                                        "of svf, openness and horizon: terrain beyond does not count, m; "
+                                        "default: no limit"),
+                          "FLOAT"),
+                 s),
+      of_terrain(texture_field("curvature", flag(s.curvature),
+                               "of svf, openness and horizon: the curved earth and refraction (0.13 of it) "
+                               "lower far terrain"),
+                 s),
       texture_field("pack", choice(s.packing, {"none", "orm", "mask"}),
                     "orm: occlusion, roughness, metallic in R, G, B; mask: metallic, occlusion, detail (1), "
                     "smoothness in R, G, B, A, as Unity takes them"),
@@ -171,6 +213,8 @@ void resolve_textures(TextureSettings& settings) {
     throw SettingError(fmt::format("{{dither}}: serves 8 bits, but {} has {}, expected {{format}} png8",
                                    texture_format_info(settings.coding.format).name,
                                    texture_format_info(settings.coding.format).bits));
+  if (settings.wants(TextureKind::kHorizon) && !texture_format_info(settings.coding.format).is_float)
+    throw SettingError("{maps}: horizon has a channel per azimuth, expected {format} exr or tif with it");
   resolve_suffixes(settings);
   resolve_kinds(settings);
   refuse_one_name_twice(settings);

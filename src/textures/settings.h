@@ -13,9 +13,26 @@
 
 namespace hemibake {
 
-// `--maps` names all up to kIrradiance; the last two are packed.
-enum class TextureKind { kVisibility, kAo, kBounce, kBounceMap, kBent, kNormal, kIrradiance, kOrm, kMask };
-constexpr size_t kTextureKinds = 9, kUnpackedKinds = 7;
+// `--maps` names all up to kHorizon; the last two are packed. kSvf to kHorizon are of the map, not of a bake.
+enum class TextureKind {
+  kVisibility,
+  kAo,
+  kBounce,
+  kBounceMap,
+  kBent,
+  kNormal,
+  kIrradiance,
+  kSvf,
+  kOpenness,
+  kNegativeOpenness,
+  kHorizon,
+  kOrm,
+  kMask
+};
+constexpr size_t kTextureKinds = 13, kUnpackedKinds = 11;
+constexpr bool is_terrain(TextureKind kind) {
+  return kind >= TextureKind::kSvf && kind <= TextureKind::kHorizon;
+}
 enum class Engine { kSubstance, kUnreal, kUnity, kGodot, kGltf };
 enum class Packing { kNone, kOrm, kMask };
 // Length of the bent normal B: 1; so that normal · B = V; or α.
@@ -32,10 +49,17 @@ struct TextureSettings {
   std::string roughness = "1", metallic = "0";       // packed: a number 0..1, or an image of the map's size
   BentLength bent_length = BentLength::kUnit;
   std::vector<double> albedo = {0.5};               // of the irradiance: one, or R, G and B
+  int horizon_azimuths = 36;                        // channels of the horizon, as in "horizon:36"
+  int azimuths = 64;                                // of the sky-view factor and the openness
+  std::optional<double> radius_m;                   // terrain beyond does not count; absent: no limit
+  bool curvature = false;                           // of the earth lowers far terrain
   std::vector<std::string> suffix_words;            // as given: "visibility=_AO"
   std::array<std::string, kTextureKinds> suffixes;  // by kind; filled in by resolve
 
   bool wants(TextureKind kind) const;
+  bool wants_terrain() const;
+  // Returns whether any texture is of a bake.
+  bool wants_bake() const;
 };
 
 // "visibility", … "orm", "mask".

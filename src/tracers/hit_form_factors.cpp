@@ -125,6 +125,21 @@ void add_form_factors(const Surface& surface, const PatchSet& patch_set, TexelLi
   }
 }
 
+void add_own_form_factor(const Surface& surface, const PatchSet& patch_set, uint32_t receiver, bool is_patch,
+                         double weight, std::vector<FormFactor>& form_factors) {
+  uint32_t patch = receiver;
+  if (!is_patch && patch_set.kind == PatchKind::kFacets) {
+    const uint32_t width = static_cast<uint32_t>(surface.width()), columns = patch_set.columns;
+    const uint32_t x = receiver % width, y = receiver / width, rows = facet_count(surface) / 2 / columns;
+    // The last texels of an open map are no first corner of a cell.
+    const uint32_t i = std::min(x, columns - 1), j = std::min(y, rows - 1);
+    const bool opposite = x > i && y > j;
+    const glm::dvec2 uv = opposite ? glm::dvec2(0) : glm::dvec2(x - i, y - j);
+    patch = sample_patch(patch_set, 2 * (j * columns + i) + (opposite ? 1 : 0), uv, 0.5);
+  }
+  form_factors.push_back({patch, static_cast<float>(weight)});
+}
+
 void merge_form_factors(std::vector<FormFactor>& form_factors) {
   if (form_factors.size() <= kFewFormFactors) return merge_few(form_factors);
   sum_equal_patches(form_factors);

@@ -38,6 +38,11 @@ void add_bilinear_form_factors(const Surface& surface, glm::dvec2 position, doub
 void add_node_form_factors(const PatchSet& patch_set, const FacetHit& hit, double u,
                            std::vector<FormFactor>& form_factors);
 
+// Appends the form factor of a receiver to itself: of a texel to a patch at its centre, of a patch to that
+// patch. receiver: a texel, or a patch where `is_patch`. weight: share of the light, 0..1.
+void add_own_form_factor(const Surface& surface, const PatchSet& patch_set, uint32_t receiver, bool is_patch,
+                         double weight, std::vector<FormFactor>& form_factors);
+
 // Sorts form factors by patch and merges equal patches; weights are summed in double in the order given.
 void merge_form_factors(std::vector<FormFactor>& form_factors);
 

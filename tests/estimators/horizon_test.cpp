@@ -25,7 +25,7 @@ HorizonOptions fine(AoKind kind, double radius_m, int azimuths, int steps) {
 }
 
 TEST(Horizon, FlatGroundIsOpen) {
-  for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
+  for (const Edge edge : {Edge::kWrap, Edge::kOpen, Edge::kGround}) {
     const Surface surface = synthetic_surface(SyntheticKind::kFlat, 8, 8, 0.1, {}, edge);
     for (const AoKind kind : {AoKind::kUniform, AoKind::kCosine}) {
       HorizonOptions options;

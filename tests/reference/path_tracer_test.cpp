@@ -204,7 +204,7 @@ TEST(Referee, AreaMeanOfDirectLightIsOpeningOverArea) {
 }
 
 TEST(Referee, DirectLightAgreesWithTheEmbreeTracer) {
-  for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
+  for (const Edge edge : {Edge::kWrap, Edge::kOpen, Edge::kGround}) {
     const Surface surface = make_noise(48, edge);
     RayOptions rays;
     const auto tracer = make_embree_tracer(surface, rays);

@@ -126,7 +126,7 @@ void expect_same(const Row& row, const Row& other) {
 }
 
 TYPED_TEST(EveryTracer, FlatGroundIsExactlyOpen) {
-  for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
+  for (const Edge edge : {Edge::kWrap, Edge::kOpen, Edge::kGround}) {
     const Surface surface = synthetic_surface(SyntheticKind::kFlat, 40, 5, 0.1, {}, edge);
     for (const int rays : {1, 3, 100}) {
       const auto tracer = TypeParam::make(surface, rays);
@@ -146,7 +146,7 @@ TYPED_TEST(EveryTracer, FlatGroundIsExactlyOpen) {
 }
 
 TYPED_TEST(EveryTracer, RowsSumToOneAndNamePatchesInOrder) {
-  for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
+  for (const Edge edge : {Edge::kWrap, Edge::kOpen, Edge::kGround}) {
     const Surface surface = white_noise_surface(37, 21, 0.3, edge);
     for (const int rays : {1, 3, 64}) {
       const auto tracer = TypeParam::make(surface, rays);
@@ -215,7 +215,7 @@ TYPED_TEST(EveryTracer, ReplayAddsUpToTheRow) {
 }
 
 TYPED_TEST(EveryTracer, LinksDoNotChangeTheSky) {
-  for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
+  for (const Edge edge : {Edge::kWrap, Edge::kOpen, Edge::kGround}) {
     const Surface surface = white_noise_surface(33, 30, 0.1, edge);
     const auto tracer = TypeParam::make(surface, 16);
     for (uint32_t i = 0; i < surface.texel_count(); ++i) {
@@ -275,9 +275,9 @@ TYPED_TEST(EveryTracer, NormalsFromAMapTiltTheHemisphere) {
 
 TYPED_TEST(EveryTracer, ExtremesStayFinite) {
   for (const double amplitude : {0.0, 1e-6, 1e3}) {
-    for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
+    for (const Edge edge : {Edge::kWrap, Edge::kOpen, Edge::kGround}) {
       for (const auto& [width, height] : {std::pair{1, 1}, {1, 37}, {37, 1}, {2, 2}, {33, 17}}) {
-        if (edge == Edge::kOpen && (width < 2 || height < 2)) continue;
+        if (edge != Edge::kWrap && (width < 2 || height < 2)) continue;
         const Surface surface = white_noise_surface(width, height, amplitude, edge);
         const auto tracer = TypeParam::make(surface, 16);
         for (uint32_t i = 0; i < std::min(surface.texel_count(), tracer->patch_set().count); ++i) {

@@ -30,6 +30,7 @@ std::string describe_values(const WrittenTexture& texture) {
     const ChannelRange& range = texture.channels[0];
     return fmt::format("mean {:.4f}, {:.4f} to {:.4f}", range.mean, range.low, range.high);
   }
+  if (texture.kind == TextureKind::kHorizon) return fmt::format("{} azimuths", texture.channels.size());
   std::string text = "mean";
   for (const ChannelRange& range : texture.channels)
     text += fmt::format(" {} {:.3f}", range.channel, range.mean);

@@ -52,6 +52,7 @@ class EmbreeTracer final : public Tracer {
 
   struct Receiver {
     FloatFrame frame;
+    uint32_t index;      // texel or patch
     uint32_t own_facet;  // kNoFacet: a texel
     double u;            // in [0, 1): draws the node of the first hit
   };
@@ -62,6 +63,7 @@ class EmbreeTracer final : public Tracer {
   template <class StartOf>
   void trace_rays(const Receiver& receiver, std::span<const WeightedDirection> rays, const StartOf& start_of,
                   bool with_links, Row& row, TracerCounts& counts) const;
+  void spread_ground(const Receiver& receiver, Row& row) const;
 
   const Surface& surface_;
   RayOptions options_;
@@ -131,6 +133,8 @@ void EmbreeTracer::trace_rays(const Receiver& receiver, std::span<const Weighted
       const double distance = is_texel ? std::numeric_limits<double>::infinity() : hit.distance_texels;
       add_form_factors(surface_, patch_set_, options_.texel_links,
                        {hit.facet, {hit.u, hit.v}, distance, rays[i].cosine_weight}, u, row.links);
+    } else if (outcome == RayOutcome::kGround) {
+      ++hits;
     } else {
       visible += rays[i].uniform_weight;
       direct += rays[i].cosine_weight;
@@ -145,15 +149,28 @@ void EmbreeTracer::trace_rays(const Receiver& receiver, std::span<const Weighted
   row.direct_over_pi = all_sky ? 1 : no_sky ? 0 : std::min(1.0, direct);
   const double length = glm::length(bent);
   row.bent_normal = length > 1e-6 ? bent / length : glm::dvec3(receiver.frame.normal);
-  if (with_links) complete_row(row);
+  if (!with_links) return;
+  if (surface_.edge == Edge::kGround && hits > 0) spread_ground(receiver, row);
+  complete_row(row);
+}
+
+// Gives the share of the ground beyond the border to the links, or to the receiver where it has none.
+void EmbreeTracer::spread_ground(const Receiver& receiver, Row& row) const {
+  const double blocked = 1 - row.direct_over_pi;
+  if (row.links.empty())
+    return add_own_form_factor(surface_, patch_set_, receiver.index, receiver.own_facet != kNoFacet, blocked,
+                               row.links);
+  double met = 0;
+  for (const FormFactor& link : row.links) met += static_cast<double>(link.weight);
+  for (FormFactor& link : row.links) link.weight *= static_cast<float>(blocked / met);
 }
 
 void EmbreeTracer::trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const {
   const glm::vec3 start = texel_start(texel);
   const double u = unit_interval(mix_bits(options_.seed, kTexelSample, texel));
   trace_rays(
-      {texel_frame(texel), kNoFacet, u}, texel_directions_, [&](size_t) { return start; }, with_links, row,
-      counts);
+      {texel_frame(texel), texel, kNoFacet, u}, texel_directions_, [&](size_t) { return start; }, with_links,
+      row, counts);
 }
 
 void EmbreeTracer::trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const {
@@ -189,7 +206,7 @@ void EmbreeTracer::trace_patch(uint32_t patch, bool with_links, Row& row, Tracer
   }
   const Frame frame =
       rotated(frame_about(facet_normal(surface_, node.facet)), 2 * kPi * random(kNodeRotation));
-  trace_rays({{frame.tangent, frame.bitangent, frame.normal}, node.facet, random(kNodeSample)}, rays,
+  trace_rays({{frame.tangent, frame.bitangent, frame.normal}, patch, node.facet, random(kNodeSample)}, rays,
              start_of, with_links, row, counts);
 }
 
@@ -201,7 +218,9 @@ std::vector<RayRecord> EmbreeTracer::replay_texel(uint32_t texel) const {
     const glm::vec3 direction = frame.world_from_tangent(ray.local);
     SurfaceHit hit;
     RayRecord record{glm::dvec3(direction), ray.cosine_weight, ray.uniform_weight, false, 0, {}, 0, 0};
-    if (scene_->follow(start, direction, kNoFacet, &hit) == RayOutcome::kHit) {
+    const RayOutcome outcome = scene_->follow(start, direction, kNoFacet, &hit);
+    if (outcome == RayOutcome::kGround) continue;  // neither sky nor a facet
+    if (outcome == RayOutcome::kHit) {
       record.hit = true;
       record.facet = hit.facet;
       record.hit_texel = facet_point_texels(surface_, hit.facet, {hit.u, hit.v});

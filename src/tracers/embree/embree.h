@@ -6,6 +6,8 @@
 // and in TracerCounts::truncated. Only rays within 10⁻⁵ rad of the horizon can get that far below the top, so
 // α and E₀/π are off by at most 10⁻⁵; with more than 10 tile lengths of height range the bound is range /
 // (10⁶ tiles). Open edges: rays that leave the map's rectangle meet nothing.
+// Ground edges: those that leave it downwards meet ground, whose share is spread over the hits; a receiver
+// without hits links to itself.
 //
 // Starts are lifted vertically: along the normal they may end inside the solid.
 // Nodes start each ray at another point of a small copy of their facet.

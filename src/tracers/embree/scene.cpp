@@ -20,7 +20,7 @@ void ignore_embree_error(void*, RTCError, const char*) {}
 }  // namespace
 
 EmbreeScene::EmbreeScene(const Surface& surface, double max_distance_m)
-    : surface_(surface), wrap_(surface.edge == Edge::kWrap) {
+    : surface_(surface), wrap_(surface.edge == Edge::kWrap), ground_beyond_(surface.edge == Edge::kGround) {
   const double range = height_range_m(surface) / surface.texel_size_m;
   top_texels_ = static_cast<float>(range);
   max_distance_texels_ = static_cast<float>(max_distance_m / surface.texel_size_m);
@@ -167,6 +167,7 @@ RayOutcome EmbreeScene::follow(const glm::vec3& start, const glm::vec3& directio
   }
   const float first_length = wrap_ ? std::min(end, length_in_block(start.x, start.y, direction)) : end;
   const RayOutcome outcome = follow_segment(start, direction, first_length, own_facet, hit);
+  if (outcome == RayOutcome::kEscaped && ground_beyond_ && direction.z < 0) return RayOutcome::kGround;
   if (outcome == RayOutcome::kHit || first_length == end) return outcome;
   return follow_beyond(start, direction, first_length, end, own_facet, hit);
 }

@@ -28,7 +28,7 @@ class EmbreeScene {
   EmbreeScene& operator=(const EmbreeScene&) = delete;
   ~EmbreeScene();
 
-  // Follows a ray to its end. start: texels. direction: unit. own_facet: never hit; kNoFacet: none.
+  // Follows a ray to its end: kGround where it leaves a map with ground edges downwards. start: texels. direction: unit. own_facet: never hit; kNoFacet: none.
   // hit: filled where the ray hits; null: only the outcome is wanted.
   RayOutcome follow(const glm::vec3& start, const glm::vec3& direction, uint32_t own_facet,
                     SurfaceHit* hit) const;
@@ -46,7 +46,7 @@ class EmbreeScene {
   const Surface& surface_;
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
-  bool wrap_;
+  bool wrap_, ground_beyond_;
   int block_width_, block_height_;  // of the repeated map in the scene, texels
   int margin_;
   uint32_t scene_columns_;  // cells in a row of the scene

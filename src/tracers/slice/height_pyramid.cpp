@@ -139,6 +139,7 @@ HeightPyramid make_height_pyramid(const Surface& surface) {
   pyramid.inverse_width = 1.0 / pyramid.width;
   pyramid.inverse_height = 1.0 / pyramid.height;
   pyramid.wrap = surface.edge == Edge::kWrap;
+  pyramid.ends_at_horizontal = surface.edge != Edge::kOpen;
   HeightPlane plane = margined_heights(surface, pyramid.wrap);
   pyramid.top = *std::max_element(plane.values.begin(), plane.values.end());
   pyramid.heights = cut_into_strips(plane);

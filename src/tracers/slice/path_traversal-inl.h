@@ -23,7 +23,7 @@ namespace HWY_NAMESPACE {
 
 // Slope: an azimuth ends where its horizon can rise by no more than this.
 constexpr float kHorizonTolerance = 1e-4f;
-// Slope below zero up to which hits are looked for on a wrapping map, which blocks everything below zero.
+// Slope below zero up to which hits are looked for where everything below zero is blocked.
 constexpr float kHitTolerance = 1e-3f;
 // Longer sides of the map after which a path ends in any case.
 constexpr double kFarthestMaps = 1e4;
@@ -37,7 +37,7 @@ class PathTraversal {
       : pyramid_(pyramid), options_(options), segments_(pyramid, paths) {
     const double farthest = kFarthestMaps * std::max({pyramid.width, pyramid.height, kSegmentCells});
     last_segment_ = static_cast<int>(std::min(farthest, options.max_distance) / kSegmentCells);
-    blocks_below_ = pyramid.wrap && std::isinf(options.max_distance);
+    blocks_below_ = pyramid.ends_at_horizontal && std::isinf(options.max_distance);
   }
 
   void begin_path(size_t index) {

@@ -30,7 +30,7 @@ std::vector<RayRecord> replay_slices(const Surface& surface, const SlicePaths& p
       return record;
     };
     IntervalIntegrals sky = integrate_interval(tangent_slope, HUGE_VAL);
-    double horizon = std::max(tangent_slope, surface.edge == Edge::kWrap ? 0 : tangent_slope);
+    double horizon = std::max(tangent_slope, surface.edge != Edge::kOpen ? 0 : tangent_slope);
     for (; interval != view.intervals[lane].end() && interval->azimuth == static_cast<uint32_t>(azimuth);
          ++interval) {
       const double low = static_cast<double>(interval->low), high = static_cast<double>(interval->high);
@@ -52,6 +52,7 @@ std::vector<RayRecord> replay_slices(const Surface& surface, const SlicePaths& p
       sky.vertical -= seen.vertical;
       horizon = std::max(horizon, high);
     }
+    if (surface.edge == Edge::kGround) sky = integrate_interval(horizon, HUGE_VAL);
     if (sky.uniform > 0) records.push_back(record_of(horizon, HUGE_VAL, sky));
   }
   return records;

@@ -118,7 +118,8 @@ class SliceTracer final : public Tracer {
   void clip_to_max_distance(const SlicePaths& paths, const SlicePacket& packet, PacketView& view) const;
   void add_texel_queries(uint32_t first, uint32_t count, std::vector<PacketQuery>& queries) const;
   void fill_rows(const RowTarget& target, std::span<const PacketQuery> queries, TracerCounts& counts) const;
-  void fill_form_factors(std::span<const SliceHit> hits, uint32_t own_facet, double u, Row& row) const;
+  void fill_form_factors(std::span<const SliceHit> hits, uint32_t receiver, uint32_t own_facet, double u,
+                         Row& row) const;
 
   const Surface& surface_;
   SliceOptions options_;
@@ -269,8 +270,8 @@ void SliceTracer::clip_to_max_distance(const SlicePaths& paths, const SlicePacke
 }
 
 // Fills the form factors of a row from its receiver's hits. own_facet: kNoFacet: a texel. u: in [0, 1).
-void SliceTracer::fill_form_factors(std::span<const SliceHit> hits, uint32_t own_facet, double u,
-                                    Row& row) const {
+void SliceTracer::fill_form_factors(std::span<const SliceHit> hits, uint32_t receiver, uint32_t own_facet,
+                                    double u, Row& row) const {
   // Rounding may leave a little of the own facet where a path leaves it at a corner.
   double blocked = 0;
   for (const SliceHit& hit : hits)
@@ -283,6 +284,10 @@ void SliceTracer::fill_form_factors(std::span<const SliceHit> hits, uint32_t own
                      {hit.facet, {hit.u, hit.v}, hit.distance, static_cast<double>(hit.weight) * scale}, u,
                      row.links);
   }
+  // Only ground beyond the border blocks the rest.
+  if (surface_.edge == Edge::kGround && row.links.empty() && 1 - row.direct_over_pi >= kLeastBlocked)
+    add_own_form_factor(surface_, patch_set_, receiver, own_facet != kNoFacet, 1 - row.direct_over_pi,
+                        row.links);
   complete_row(row);
 }
 
@@ -312,7 +317,7 @@ void SliceTracer::fill_rows(const RowTarget& target, std::span<const PacketQuery
         const uint32_t own_facet = of_nodes ? piece[i].first_facet + 2 * lane : kNoFacet;
         const double u =
             unit_interval(mix_bits(options_.seed, of_nodes ? kNodeSample : kTexelSample, receiver));
-        fill_form_factors(views[i].hits[lane], own_facet, u, row);
+        fill_form_factors(views[i].hits[lane], receiver, own_facet, u, row);
       }
     }
   }

@@ -20,7 +20,8 @@
 // sky: α and E₀/π are off by at most 10⁻⁴. Azimuths followed for 10⁴ times the map's longer side end there,
 // and count in TracerCounts::truncated. Below a slope of zero a wrapping map blocks everything; hits end at a
 // slope of −10⁻³, and the largest form factor gets the rest. Open edges: beyond the map's rectangle is
-// nothing.
+// nothing. Ground edges: below a slope of zero everything is blocked, by facets or by the ground beyond the
+// map, whose share is spread over the hits; a receiver without hits links to itself.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +37,7 @@ namespace hemibake {
 struct SliceOptions {
   int azimuths = 64;  // per receiver, 1..65536
   double max_distance_m =
-      std::numeric_limits<double>::infinity();  // hits beyond, along the ray, are sky, > 0
+      std::numeric_limits<double>::infinity();  // hits beyond, along the ray, are sky, > 0; none with ground edges
   PatchKind patch_kind = PatchKind::kFacets;
   TexelLinks texel_links = TexelLinks::kBilinear;
   double lift_texels = 0;  // of starts above the surface: 0 is the truth, > 0 compares with ray tracers

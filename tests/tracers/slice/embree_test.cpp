@@ -82,6 +82,10 @@ TEST(SliceAgainstEmbree, NarrowMap) {
 TEST(SliceAgainstEmbree, OpenEdges) {
   expect_same_sky(synthetic_surface(SyntheticKind::kConcrete, 90, 60, 0.2, {}, Edge::kOpen));
 }
+TEST(SliceAgainstEmbree, GroundEdges) {
+  expect_same_sky(synthetic_surface(SyntheticKind::kConcrete, 90, 60, 0.2, {}, Edge::kGround));
+  expect_same_sky(synthetic_surface(SyntheticKind::kTerrain, 64, 64, {}, {}, Edge::kGround));
+}
 TEST(SliceAgainstEmbree, MaxDistance) {
   expect_same_sky(synthetic_surface(SyntheticKind::kShapes, 64, 64, 0.45), 0.15);
   expect_same_sky(synthetic_surface(SyntheticKind::kNoise, 64, 64, 0.3, {}, Edge::kOpen), 0.1);
@@ -116,11 +120,15 @@ TEST(SliceAgainstEmbree, LightBouncedBetweenFacets) {
   expect_same_bounces(synthetic_surface(SyntheticKind::kBricks, 48, 48, 0.15), PatchKind::kFacets);
   expect_same_bounces(synthetic_surface(SyntheticKind::kConcrete, 40, 48, 0.3, {}, Edge::kOpen),
                       PatchKind::kFacets);
+  expect_same_bounces(synthetic_surface(SyntheticKind::kConcrete, 40, 48, 0.3, {}, Edge::kGround),
+                      PatchKind::kFacets);
   expect_same_bounces(synthetic_surface(SyntheticKind::kNoise, 48, 48, 0.3), PatchKind::kFacets, 0.15);
 }
 
 TEST(SliceAgainstEmbree, LightBouncedBetweenTexels) {
   expect_same_bounces(synthetic_surface(SyntheticKind::kBricks, 48, 48, 0.15), PatchKind::kTexels);
+  expect_same_bounces(synthetic_surface(SyntheticKind::kConcrete, 40, 48, 0.3, {}, Edge::kGround),
+                      PatchKind::kTexels);
   expect_same_bounces(synthetic_surface(SyntheticKind::kNoise, 48, 48, 0.3), PatchKind::kTexels, 0.15);
 }
 
