@@ -139,7 +139,7 @@ void read_as_before(const Provenance& provenance, const std::filesystem::path& p
 Provenance record_of(const LoadedMap& map, const BakeResult& result, std::string_view command) {
   Provenance p = make_provenance(command);
   record_map(map.settings, map.sha256, p);
-  if (map.place) record_place(*map.place, p);
+  if (map.place) record_place(place_without_ring(*map.place, result.settings.margin), p);
   p["texel_size_m"] = result.texel_size_m;
   BakeSettings settings = result.settings;
   record_fields(bake_fields(settings), p);
