@@ -41,7 +41,8 @@ bool has_integers(const HeightFile& file) { return file.sample_type.find("intege
 // Returns why the values are metres without a word of the user; kDefault where they are 0..1.
 UnitReason reason_for_metres(const HeightFile& file, const Range& range) {
   if (file.in_metres || file.place) return UnitReason::kRaster;
-  if (has_integers(file) && (range.low < 0 || file.full_scale == 1)) return UnitReason::kSigned;
+  const bool is_signed = file.sample_type.find("signed") != std::string::npos;
+  if (has_integers(file) && (is_signed || range.low < 0 || file.full_scale == 1)) return UnitReason::kSigned;
   if (!has_integers(file) && range.width() > kWidestUnitRange) return UnitReason::kWideFloats;
   return UnitReason::kDefault;
 }

@@ -11,7 +11,7 @@ namespace hemibake {
 enum class UnitReason {
   kSaid,        // by the settings
   kRaster,      // the file is terrain
-  kSigned,      // integers below 0
+  kSigned,      // integers of a type that goes below 0
   kWideFloats,  // floats that range over more than 2
   kAmplitude,   // the same, but an amplitude scales them
   kDefault      // 0..1

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -266,27 +265,12 @@ void check_single_channel(const fs::path& path, const HeightFileOptions& options
         fmt::format("{}: has one channel, expected no --channel '{}'", path.string(), options.channel));
 }
 
-// Returns what to do with a terrain format; empty where the name is none of one.
-std::string terrain_hint(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-  for (const char* known : {".hgt", ".asc", ".bil", ".bip", ".flt", ".vrt", ".nc", ".dem", ".dt0", ".dt1",
-                            ".dt2", ".img", ".adf", ".grd"})
-    if (extension == known)
-      return fmt::format("gdal_translate {} {}", path.string(),
-                         fs::path(path).replace_extension(".tif").string());
-  return "";
-}
-
 HeightFile read_image(const fs::path& path, const HeightFileOptions& options) {
   std::error_code ignored;
   const bool is_file = fs::is_regular_file(path, ignored) && fs::file_size(path, ignored) > 0;
   if (is_file && is_raw_name(path))
     throw InputError(
         fmt::format("{}: has no header, expected --raw WxH:TYPE; {}", path.string(), raw_suggestion(path)));
-  if (const std::string hint = is_file ? terrain_hint(path) : ""; !hint.empty())
-    throw InputError(fmt::format("{}: is a terrain file, which takes GDAL to read, expected an image: {}",
-                                 path.string(), hint));
   if (is_file && is_pnm_file(path)) {
     check_only_part(path, options);
     PnmReader reader(path);

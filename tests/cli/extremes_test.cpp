@@ -53,10 +53,11 @@ TEST_F(Extremes, FlatGround) {
     write_bytes(folder_ / "results/fit.json", "{\"of\": \"an earlier run\"}");
     const CommandResult result = run("run " + map + " -o results --rays 16 --json");
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_EQ(result.standard_error,
-              "hemibake: " + map.substr(0, map.find(' ')) +
-                  ": no fit: 1 usable bins, expected at least 3 for the 2 parameters of "
-                  "published F0\n");
+    EXPECT_THAT(result.standard_error,
+                testing::EndsWith("hemibake: " + map.substr(0, map.find(' ')) +
+                                  ": no fit: 1 usable bins, expected at least 3 for the 2 parameters of "
+                                  "published F0\n"));
+    EXPECT_THAT(result.standard_error, testing::HasSubstr("warning: "));  // all heights are alike
     const auto json = nlohmann::json::parse(result.standard_output);
     EXPECT_TRUE(json.at("fits").is_null());
     EXPECT_TRUE(json.at("check").at("passed"));

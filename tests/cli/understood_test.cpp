@@ -118,6 +118,61 @@ TEST_F(Understood, MetresAreMetresWhateverTheirBitDepth) {
   EXPECT_EQ(map_of("float.exr --size 9600").at("heights_because"), "floats that range over more than 2");
 }
 
+TEST_F(Understood, SignedIntegersAreMetresAlsoWhereAllLieAboveZero) {
+  const auto metres = [](int x, int y) { return std::vector<double>{std::round(800 + 600 * relief(x, y))}; };
+  write<int16_t>("int.tif", {"Y"}, metres);
+  write<float>("float.exr", {"Y"}, metres);
+  const Grid<float> expected = ao("float.exr --size 320");
+  EXPECT_LT(*std::ranges::min_element(expected.values), 0.5);
+  expect_near_ao("int.tif --size 320", expected, 0);
+  expect_near_ao("int.tif --size 320 --amplitude 1", expected, 0);
+}
+
+TEST_F(Understood, HolesAreRefusedOrFilled) {
+  const auto hole = [](int x, int y) { return std::hypot(x - 9, y - 12) < 4; };
+  write<float>("holes.exr", {"Y"},
+               [&](int x, int y) { return std::vector<double>{hole(x, y) ? -9999 : 100 * relief(x, y)}; });
+  write<float>("nan.exr", {"Y"}, [&](int x, int y) {
+    return std::vector<double>{hole(x, y) ? std::numeric_limits<double>::quiet_NaN() : 100 * relief(x, y)};
+  });
+  EXPECT_THAT(warnings("holes.exr --size 32"), HasSubstr("--nodata -9999"));
+  expect_refusal("bake holes.exr -o b.exr --nodata -9999", HasSubstr("--holes fill"));
+  expect_refusal("bake nan.exr -o b.exr", HasSubstr("45 texels have no height (first 7,9)"));
+  const Grid<float> filled = ao("holes.exr --size 32 --nodata -9999 --holes fill");
+  expect_near_ao("nan.exr --size 32 --holes fill", filled, 0);
+  EXPECT_EQ(map_of("nan.exr --size 32 --holes fill").at("holes"), 45);
+}
+
+TEST_F(Understood, TexelsThatAreNotSquareAreMadeSo) {
+  const auto metres = [](double x, double y) {
+    return 400 * std::sin(kPi2 * x / 320) * std::cos(kPi2 * y / 960);
+  };
+  write<float>("oblong.exr", {"Y"},
+               [&](int x, int y) { return std::vector<double>{metres(10 * x, 30 * y)}; });
+  // The same ground in square texels: linear between the rows, which the middle of each three has exactly.
+  Grid<float> square(kSide, 3 * kSide);
+  for (int j = 0; j < square.height; ++j)
+    for (int x = 0; x < kSide; ++x) {
+      const double y = (j - 1) / 3.0, below = std::floor(y);
+      const double a = metres(10 * x, 30 * below), b = metres(10 * x, 30 * (below + 1));
+      square(x, j) = static_cast<float>(a + (y - below) * (b - a));
+    }
+  write_height_map(folder_ / "square.exr", square, {});
+  const Grid<float> expected = ao("square.exr --texel-size 10");
+  const Grid<float> made = ao("oblong.exr --texel-size 10,30");
+  ASSERT_EQ(made.height, square.height);
+  double sum = 0, squares = 0;
+  for (size_t i = 0; i < made.size(); ++i) {
+    const double error = static_cast<double>(made[i]) - static_cast<double>(expected[i]);
+    sum += error, squares += error * error;
+  }
+  const auto count = static_cast<double>(made.size());
+  EXPECT_LT(std::abs(sum / count), 1e-5);
+  EXPECT_LT(std::sqrt(squares / count), 1e-4);
+  EXPECT_THAT(run_well("bake oblong.exr -o b.exr --texel-size 10,30 --rays 4 --outputs ao").standard_output,
+              HasSubstr("texels of 10 x 30 m, wrap, made square: 32 x 96"));
+}
+
 TEST_F(Understood, AnAmplitudeOfFloatsScalesThemAndMetresTakeNone) {
   write_unit_map();
   write<float>("wide.exr", {"Y"}, [](int x, int y) { return std::vector<double>{10 * relief(x, y)}; });

@@ -114,12 +114,5 @@ TEST_F(HeightFiles, BrokenNpyIsRefused) {
   expect(npy("'<f4'", "False", "(1, 2)", bytes_of<float>({1, INFINITY})), "height is inf at texel 1,0");
 }
 
-TEST_F(HeightFiles, TerrainWithoutGdalNamesTheConversion) {
-  for (const char* name : {"a.hgt", "a.asc", "a.BIL", "a.vrt", "a.nc"}) {
-    write_bytes(folder_ / name, "ncols 2");
-    EXPECT_THAT(fault(name), AllOf(HasSubstr("gdal_translate "), HasSubstr("a.tif"))) << name;
-  }
-}
-
 }  // namespace
 }  // namespace hemibake
