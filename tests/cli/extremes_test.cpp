@@ -57,7 +57,8 @@ TEST_F(Extremes, FlatGround) {
                 testing::EndsWith("hemibake: " + map.substr(0, map.find(' ')) +
                                   ": no fit: 1 usable bins, expected at least 3 for the 2 parameters of "
                                   "published F0\n"));
-    EXPECT_THAT(result.standard_error, testing::HasSubstr("warning: "));  // all heights are alike
+    // Heights that are all alike are warned of, unless the amplitude makes them so.
+    EXPECT_EQ(result.standard_error.find("warning: ") != std::string::npos, map == "flat.exr");
     const auto json = nlohmann::json::parse(result.standard_output);
     EXPECT_TRUE(json.at("fits").is_null());
     EXPECT_TRUE(json.at("check").at("passed"));

@@ -157,7 +157,7 @@ TEST_F(Understood, TexelsThatAreNotSquareAreMadeSo) {
       const double a = metres(10 * x, 30 * below), b = metres(10 * x, 30 * (below + 1));
       square(x, j) = static_cast<float>(a + (y - below) * (b - a));
     }
-  write_height_map(folder_ / "square.exr", square, {});
+  write_height_map(folder_ / "square.exr", square, make_provenance("test"));
   const Grid<float> expected = ao("square.exr --texel-size 10");
   const Grid<float> made = ao("oblong.exr --texel-size 10,30");
   ASSERT_EQ(made.height, square.height);
