@@ -19,7 +19,6 @@
 #include "core/error.h"
 #include "io/bake_file.h"
 #include "io/file_context.h"
-#include "io/geo_place.h"
 #include "io/image_io.h"
 #include "io/output_file.h"
 #include "textures/make_textures.h"
@@ -41,15 +40,19 @@ struct TexturesOptions : BakeOptions {
   std::vector<std::string> bake_option_names;
 };
 
-// Returns whether a file is a bake; any other is a height map.
+// Returns whether a file is a bake; any other is a height map, whose reader says what is wrong with it.
 bool is_bake(const fs::path& path) {
-  if (is_geo_file(path)) return false;
-  const ImageHeader header = read_image_header(path);
-  if (!header.provenance.is_object()) return false;
-  return std::ranges::any_of(header.channels, [](const std::string& channel) {
-    return channel == "ao" || channel == "visibility" || channel == "irradiance.00" || channel == "bent.X" ||
-           channel == "normal.X";
-  });
+  if (lower_case_extension(path) != ".exr") return false;
+  try {
+    const ImageHeader header = read_image_header(path);
+    if (!header.provenance.is_object()) return false;
+    return std::ranges::any_of(header.channels, [](const std::string& channel) {
+      return channel == "ao" || channel == "visibility" || channel == "irradiance.00" ||
+             channel == "bent.X" || channel == "normal.X";
+    });
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 void check_outputs(const TexturesOptions& options, const std::string& name) {

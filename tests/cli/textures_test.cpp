@@ -167,6 +167,17 @@ TEST_F(Textures, ExtremesAreTextures) {
   }
 }
 
+// They have no header that says whether they are bakes.
+TEST_F(Textures, OfMapsThatAreNoImages) {
+  std::string raw(64, '\0');
+  for (size_t i = 0; i < raw.size(); ++i) raw[i] = static_cast<char>(i * 37 % 251);
+  write_bytes(folder_ / "heights.raw", raw);
+  write_bytes(folder_ / "heights.pgm", "P5 8 8 255\n" + raw);
+  run_well("textures heights.raw --raw 8x8:u8 -o raw --maps ao --rays 8");
+  run_well("textures heights.pgm -o pgm --maps ao --rays 8");
+  EXPECT_EQ(read("raw/heights_ao.png").values, read("pgm/heights_ao.png").values);
+}
+
 TEST_F(Textures, RefusesWhatMakesNoSense) {
   using testing::HasSubstr;
   run_well("bake map.exr -o ao.exr --rays 4 --outputs ao");
