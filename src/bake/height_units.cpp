@@ -79,14 +79,8 @@ std::pair<double, double> texel_of_place(const GeoPlace& place) {
 void resolve_texel(const HeightFile& file, MapSettings& settings, HeightUnits& units) {
   const int width = file.values.width, height = file.values.height;
   const bool says = settings.size_m || !settings.texel_m.empty();
-  const bool has_place = file.place && !file.place->in_degrees;
-  if (file.place && file.place->in_degrees && !says)
-    throw SettingError(
-        "texels are degrees, expected metres: reproject first (gdalwarp -t_srs EPSG:CODE -r bilinear), or "
-        "say "
-        "{texel-size} X,Y in metres");
   units.texel_overrides_file = says && file.place;
-  units.texel_from_file = !says && has_place;
+  units.texel_from_file = !says && file.place;
   const double aspect = file.pixel_aspect;
   double size_m = settings.size_m.value_or(kDefaultSizeM);
   if (!settings.texel_m.empty()) {
@@ -118,14 +112,11 @@ void restore_integers(HeightFile& file) {
 void scale_metres(HeightFile& file, MapSettings& settings, HeightUnits& units) {
   restore_integers(file);
   const Range stored = range_of(file);
-  const double scale = file.place ? file.place->metres_per_value : 1;
-  if (scale != 1)
-    for (float& value : file.values.values) value = static_cast<float>(static_cast<double>(value) * scale);
   settings.amplitude_m = 1;
   units.stored_low = stored.low;
   units.stored_high = stored.high;
-  units.lowest_m = std::min(stored.low * scale, stored.high * scale);
-  units.highest_m = std::max(stored.low * scale, stored.high * scale);
+  units.lowest_m = stored.low;
+  units.highest_m = stored.high;
 }
 
 void scale_unit(HeightFile& file, const Range& stored, MapSettings& settings, HeightUnits& units) {

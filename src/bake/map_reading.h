@@ -1,4 +1,4 @@
-// What a map was understood as, and what makes that doubtful.
+// Tells what a map was understood as, and what makes that doubtful.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ namespace hemibake {
 // Source of what is known about the green channel of a normal map.
 enum class NormalYSource { kSaid, kFile, kHeights };
 
-// What a normal map was understood as.
+// Holds what a normal map was understood as.
 struct NormalReading {
   std::vector<std::string> channels;
   NormalEncoding encoding = NormalEncoding::kLinear;
@@ -27,7 +27,7 @@ struct NormalReading {
   SlopeAgreement agreement;  // with the slopes of the heights
 };
 
-// What a map was understood as. Settings are named in braces in the warnings, as in SettingError.
+// Holds what a map was understood as. Settings are named in braces in the warnings, as in SettingError.
 struct MapReading {
   HeightFile file;  // without its values and holes
   HeightUnits units;

@@ -22,7 +22,7 @@ struct MapOutcome {
   int exit_code = 0;  // 0 or 1
 };
 
-// What becomes of a map whose results are there already.
+// Says whether a map is done again whose results are there already.
 enum class Again { kSkip, kMake };
 
 // Replaces the field MAP by one for several maps and folders.

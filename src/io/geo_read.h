@@ -9,7 +9,7 @@
 namespace hemibake {
 
 // Reads terrain into metres, north up: the band's scale, offset and unit are applied, its NoData and its mask
-// are holes, as values that are not finite; place.metres_per_value stays 1. Overviews are ignored. Returns
+// are holes, as values that are not finite. Overviews are ignored. Returns
 // nothing for a file that is no terrain (is_geo_file), that options say to read otherwise (raw, encoding,
 // part), and for a TIFF without coordinates. options.channel: a band's number from 1 or its description, or a
 // variable of netCDF; empty: the first band. Throws InputError naming the file where GDAL cannot be loaded or

@@ -35,8 +35,6 @@ struct GeoPlace {
   std::array<double, 6> transform{};  // of texel corners, as GDAL orders them: x = t0 + i t1 + j t2
   std::optional<double> no_data;      // as the file names it
   double metres_per_unit = 1;         // of the horizontal coordinates
-  double metres_per_value = 1;        // of the heights
-  bool in_degrees = false;            // horizontal coordinates are longitude and latitude
 };
 
 // A height map as its file holds it, right way up.

@@ -1,4 +1,4 @@
-// What a map was understood as, as text and as JSON.
+// Prints what a map was understood as, as text and as JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
