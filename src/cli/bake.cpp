@@ -40,11 +40,12 @@ void check_outputs(const BakeCommandOptions& options) {
         "one "
         "texel sees");
   if (options.output.empty()) throw InputError("--output: missing, expected -o BAKE.exr");
-  const std::string extension = lower_case_extension(options.output);
-  if (extension == ".png" || extension == ".tif" || extension == ".tiff")
-    throw InputError(fmt::format("{}: a bake is an .exr, expected one ('hemibake textures' writes {} files)",
-                                 options.output.string(), extension));
-  check_bake_output(options.map, options.output, {".exr"});
+  if (lower_case_extension(options.output) == ".png")
+    throw InputError(fmt::format(
+        "{}: a bake is an .exr, or a .tif for other programs, expected one ('hemibake textures' writes "
+        ".png files)",
+        options.output.string()));
+  check_bake_output(options.map, options.output, {".exr", ".tif", ".tiff"});
   if (!options.links.empty()) check_bake_output(options.map, options.links, {".h5", ".hdf5"});
 }
 
@@ -89,7 +90,8 @@ MapOutcome bake_one(BakeCommandOptions options, Again again, const Invocation& i
 int bake_many(const BakeCommandOptions& options, const Invocation& invocation) {
   refuse_settings_of_one_map(invocation, {"normals", "links", "replay", "dry-run"});
   if (options.output.empty()) throw InputError("--output: missing, expected -o DIR for several maps");
-  if (lower_case_extension(options.output) == ".exr")
+  const std::string extension = lower_case_extension(options.output);
+  if (extension == ".exr" || extension == ".tif" || extension == ".tiff")
     throw InputError(
         fmt::format("--output: {} is one file, expected a folder for several maps", options.output.string()));
   const std::vector<std::filesystem::path> maps = find_maps(options.maps);
@@ -121,7 +123,9 @@ CommandSetup setup_bake() {
   take_several_maps(setup.fields, options->maps);
   append(
       setup.fields,
-      {in_group(shown_as(output_option(options->output, "the bake to write, EXR; for several maps a folder"),
+      {in_group(shown_as(output_option(
+                             options->output,
+                             "the bake to write, EXR, or TIFF for other programs; for several maps a folder"),
                          "BAKE.exr|DIR"),
                 "Output"),
        in_group(shown_as(option("replay", whole_numbers(options->replay, 2, 0, int{kMaxTexels - 1}),
