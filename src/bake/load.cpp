@@ -76,6 +76,7 @@ void make_surface_of(HeightFile file, LoadedMap& map) {
   MapReading& reading = map.reading;
   const std::vector<std::string> outliers = outlier_warnings(file, settings.heights == HeightUnit::kMetres);
   append(reading.warnings, outliers);
+  if (!file.doubt.empty()) reading.warnings.push_back(file.doubt);
   fill_or_refuse_holes(settings, file, reading);
   reading.units = resolve_units(file, settings);
   const bool metres = settings.heights == HeightUnit::kMetres;

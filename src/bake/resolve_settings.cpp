@@ -99,7 +99,7 @@ void validate_units(const MapSettings& map, const IsGiven& given) {
     if (given(one) && given(other))
       throw SettingError(fmt::format("{{{}}}: is given with {{{}}}, expected one of the two", one, other));
   };
-  exclude("texel-size", "size");
+  exclude("texel", "size");
   exclude("high", "amplitude");
   exclude("low", "amplitude");
   if (map.low_m && !map.high_m)

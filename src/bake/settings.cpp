@@ -89,7 +89,7 @@ std::vector<Field> unit_fields(MapSettings& s) {
                                  "length of the map's longer side, m; default: 1, or as the file says"))),
       with_default(when(
           [&s] { return !s.texel_m.empty(); },
-          shown_as(recorded("texel-size", "texel_m", "Surface", texel,
+          shown_as(recorded("texel", "texel_m", "Surface", texel,
                             "width of a texel, and its height where that is another, m, instead of --size"),
                    "X[,Y]"))),
       with_default(

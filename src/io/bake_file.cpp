@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "core/error.h"
+#include "io/geo_place.h"
+#include "io/geo_write.h"
 #include "io/image_io.h"
 #include "io/output_file.h"
 
@@ -106,17 +109,40 @@ double read_bounce_albedo(const fs::path& path, const Provenance& provenance) {
                   path.string()));
 }
 
+bool is_tiff(const std::string& extension) { return extension == ".tif" || extension == ".tiff"; }
+
+// Writes the planes as bands of a TIFF. A texel with a value that is not finite is NoData.
+void write_bands(const fs::path& path, const Bake& bake, const Provenance& provenance) {
+  const std::vector<Plane> planes = planes_of<const float>(bake);
+  Grid<uint8_t> holes(bake.width, bake.height);
+  bool has_holes = false;
+  for (size_t texel = 0; texel < holes.size(); ++texel)
+    for (const Plane& plane : planes)
+      if (!std::isfinite(plane.first[texel * plane.stride])) holes[texel] = has_holes = true;
+  if (!has_holes) holes = {};
+  const GeoPlace place = recorded_place(provenance).value_or(GeoPlace{});
+  OutputFile file(path);
+  write_geo_tiff(file, bake.width, bake.height, planes, {place, holes}, provenance);
+  file.finish();
+  file.commit();
+}
+
 }  // namespace
 
 void write_bake(const fs::path& path, const Bake& bake, const Provenance& provenance) {
   check_sizes(bake);
-  if (lower_case_extension(path) != ".exr")
-    throw InputError(fmt::format("{}: a bake cannot be written as '{}', expected .exr", path.string(),
+  const std::string extension = lower_case_extension(path);
+  if (is_tiff(extension)) return write_bands(path, bake, provenance);
+  if (extension != ".exr")
+    throw InputError(fmt::format("{}: a bake cannot be written as '{}', expected .exr or .tif", path.string(),
                                  path.extension().string()));
   write_image(path, bake.width, bake.height, planes_of<const float>(bake), provenance);
 }
 
 BakeFile read_bake(const fs::path& path) {
+  if (is_tiff(lower_case_extension(path)))
+    throw InputError(
+        fmt::format("{}: bakes are read from EXR, expected the .exr of `hemibake bake`", path.string()));
   const ImageHeader header = read_image_header(path);
   if (!header.provenance.is_object())
     throw InputError(

@@ -14,9 +14,9 @@ struct BakeFile {
 };
 
 // Writes `ao`, `irradiance.00`…, `total`, `residual`, `normal.X/Y/Z`, `bent.X/Y/Z`, and the provenance as
-// attributes `hemibake:NAME` (write_image). Leaves out planes that are empty. Throws std::logic_error where a
-// plane has another size, all are empty, or a value is not finite; InputError where the file cannot be
-// written.
+// attributes `hemibake:NAME` (write_image). A .tif has the same planes as bands, with the map's place. Leaves
+// out planes that are empty. Throws std::logic_error where a plane has another size, all are empty, or a
+// value is not finite; InputError where the file cannot be written.
 void write_bake(const std::filesystem::path& path, const Bake& bake, const Provenance& provenance);
 
 // Reads bit for bit the planes written; ignores channels of other names. Throws InputError naming the file

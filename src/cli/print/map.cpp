@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bake/normal_reading.h"
 #include "core/error.h"
 
 namespace hemibake {
@@ -64,20 +65,16 @@ std::string describe_values(const LoadedMap& map) {
   return text;
 }
 
-std::string describe_correlation(const std::optional<double>& value) {
-  return value ? fmt::format("{:.2f}", *value) : "none";
-}
-
 std::string describe_normals(const LoadedMap& map) {
   const NormalReading& normals = *map.reading.normals;
   std::string text =
-      fmt::format("normals   {} of {}, {}, y {} ({}), correlation with the heights x {}, y {}",
+      fmt::format("normals   {} of {}, {}, y {} ({}), correlation with the heights {}",
                   fmt::join(normals.channels, ", "), map.settings.normal_map.string(),
                   name_in(kEncodingNames, normals.encoding), normals.y == NormalY::kUp ? "up" : "down",
                   normals.y_from == NormalYSource::kSaid   ? "as said"
                   : normals.y_from == NormalYSource::kFile ? "as the file says"
                                                            : "as fits the heights",
-                  describe_correlation(normals.agreement.x), describe_correlation(normals.agreement.y));
+                  agreement_text(normals.agreement));
   if (normals.agreement.slope_ratio)
     text += fmt::format(", slopes {:.3g} times theirs", *normals.agreement.slope_ratio);
   return text + "\n";
