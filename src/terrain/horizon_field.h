@@ -1,5 +1,5 @@
-// The heights of a map laid out for horizons: with margins, so that a packet of texels reads a piece of a path
-// without asking for the edge; and the maxima of windows, so that a path skips pieces below the horizon.
+// The heights of a map laid out for horizons: with margins, so that a packet of texels reads a piece of a
+// path without asking for the edge; and the maxima of windows, so that a path skips pieces below the horizon.
 #pragma once
 
 #include "core/grid.h"

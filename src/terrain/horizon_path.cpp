@@ -39,8 +39,12 @@ void append_crossings(double dx, double dy, double longest, std::vector<EdgeCros
 double piece_length(double dx, double dy) { return kPieceTexels / std::max(std::abs(dx), std::abs(dy)); }
 
 HorizonWindow window_from(int corner_x, int corner_y, double near, double far, double drop) {
-  return {corner_x, corner_y, static_cast<float>(near), static_cast<float>(1 / near),
-          static_cast<float>(1 / far), static_cast<float>(drop * near)};
+  return {corner_x,
+          corner_y,
+          static_cast<float>(near),
+          static_cast<float>(1 / near),
+          static_cast<float>(1 / far),
+          static_cast<float>(drop * near)};
 }
 
 }  // namespace
@@ -69,8 +73,7 @@ HorizonPath find_horizon_path(double azimuth, double longest, double drop, int p
     for (size_t level = 0; level < kWindowLevels; ++level)
       if (path.pieces.size() % static_cast<size_t>(kWindowPieces[level]) == 0) {
         const double far = step * (number + kWindowPieces[level]);
-        path.windows[level].push_back(
-            window_from(corner(path.x, far), corner(path.y, far), near, far, drop));
+        path.windows[level].push_back(window_from(corner(path.x, far), corner(path.y, far), near, far, drop));
       }
     const int corner_x = corner(path.x, step * (number + 1)), corner_y = corner(path.y, step * (number + 1));
     HorizonPiece piece{static_cast<uint32_t>(path.crossings.size()), 0};

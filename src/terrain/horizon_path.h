@@ -27,9 +27,9 @@ struct HorizonCrossing {
 
 // Square window that the stretch of a path stays in, for one texel.
 struct HorizonWindow {
-  int corner_x, corner_y;  // from the start
+  int corner_x, corner_y;                 // from the start
   float near, inverse_near, inverse_far;  // distances of its ends, texels
-  float drop;  // of the slope at the near end
+  float drop;                             // of the slope at the near end
 };
 
 struct HorizonPiece {

@@ -49,8 +49,7 @@ double HorizonTracer::ground_slope(const HorizonPath& path, int x, int y, double
   const double u = at_x - i, v = at_y - j;
   const auto height = [&](int dx, int dy) { return static_cast<double>(*field_.at(i + dx, j + dy)); };
   const double rise = (1 - v) * ((1 - u) * height(0, 0) + u * height(1, 0)) +
-                      v * ((1 - u) * height(0, 1) + u * height(1, 1)) -
-                      static_cast<double>(*field_.at(x, y));
+                      v * ((1 - u) * height(0, 1) + u * height(1, 1)) - static_cast<double>(*field_.at(x, y));
   // rise / r − drop · r has its maximum where r² = −rise / drop.
   const double farthest = drop_ > 0 && rise < 0 ? std::sqrt(-rise / drop_) : rise < 0 ? HUGE_VAL : border;
   const double distance = std::clamp(farthest, border, std::max(border, radius_));

@@ -78,8 +78,8 @@ HWY_INLINE bool is_below(const Packet& packet, float tall, const HorizonWindow& 
 }
 
 template <bool kDrops>
-HWY_INLINE void walk_piece(const HorizonPath& path, const HorizonPiece& piece, const float* HWY_RESTRICT corner,
-                           Packet& packet) {
+HWY_INLINE void walk_piece(const HorizonPath& path, const HorizonPiece& piece,
+                           const float* HWY_RESTRICT corner, Packet& packet) {
   V slope[kParts];
   for (size_t p = 0; p < kParts; ++p) slope[p] = packet.slope[p];
   for (uint32_t c = piece.first; c < piece.end; ++c) {
