@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -106,6 +107,16 @@ double read_bounce_albedo(const fs::path& path, const Provenance& provenance) {
                   path.string()));
 }
 
+// Throws InputError where a texel has no value in one plane, but one in another.
+void check_holes(const fs::path& path, Bake& bake) {
+  for (const BasicPlane<float>& plane : planes_of<float>(bake))
+    for (size_t i = 0; i < static_cast<size_t>(bake.width) * static_cast<size_t>(bake.height); ++i)
+      if (std::isnan(plane.first[i * plane.stride]) && !is_hole(bake, i))
+        throw InputError(fmt::format(
+            "{}: channel {} is nan at texel {},{}, expected a number, or nan in all channels", path.string(),
+            plane.channel, i % static_cast<size_t>(bake.width), i / static_cast<size_t>(bake.width)));
+}
+
 }  // namespace
 
 void write_bake(const fs::path& path, const Bake& bake, const Provenance& provenance) {
@@ -123,7 +134,10 @@ BakeFile read_bake(const fs::path& path) {
         fmt::format("{}: has no hemibake attributes, expected a file of `hemibake bake`", path.string()));
   BakeFile file{make_room(path, header), header.provenance};
   if (!file.bake.bounce.empty()) file.bake.bounce_albedo = read_bounce_albedo(path, header.provenance);
-  read_planes(path, header.width, header.height, planes_of<float>(file.bake));
+  const bool open = header.provenance.value("holes", "") == "open";
+  read_planes(path, header.width, header.height, planes_of<float>(file.bake),
+              open ? MissingValues::kNaN : MissingValues::kRefused);
+  if (open) check_holes(path, file.bake);
   return file;
 }
 
