@@ -111,20 +111,24 @@ double read_bounce_albedo(const fs::path& path, const Provenance& provenance) {
 
 bool is_tiff(const std::string& extension) { return extension == ".tif" || extension == ".tiff"; }
 
-// Writes the planes as bands of a TIFF. A texel with a value that is not finite is NoData.
+// Writes the planes as bands of a TIFF. Open holes are NoData.
 void write_bands(const fs::path& path, const Bake& bake, const Provenance& provenance) {
   const std::vector<Plane> planes = planes_of<const float>(bake);
-  Grid<uint8_t> holes(bake.width, bake.height);
-  bool has_holes = false;
-  for (size_t texel = 0; texel < holes.size(); ++texel)
-    for (const Plane& plane : planes)
-      if (!std::isfinite(plane.first[texel * plane.stride])) holes[texel] = has_holes = true;
-  if (!has_holes) holes = {};
   const GeoPlace place = recorded_place(provenance).value_or(GeoPlace{});
   OutputFile file(path);
-  write_geo_tiff(file, bake.width, bake.height, planes, {place, holes}, provenance);
+  write_geo_tiff(file, bake.width, bake.height, planes, {place, holes_of(bake)}, provenance);
   file.finish();
   file.commit();
+}
+
+// Throws InputError where a texel has no value in one plane, but one in another.
+void check_holes(const fs::path& path, Bake& bake) {
+  for (const BasicPlane<float>& plane : planes_of<float>(bake))
+    for (size_t i = 0; i < static_cast<size_t>(bake.width) * static_cast<size_t>(bake.height); ++i)
+      if (std::isnan(plane.first[i * plane.stride]) && !is_hole(bake, i))
+        throw InputError(fmt::format(
+            "{}: channel {} is nan at texel {},{}, expected a number, or nan in all channels", path.string(),
+            plane.channel, i % static_cast<size_t>(bake.width), i / static_cast<size_t>(bake.width)));
 }
 
 }  // namespace
@@ -149,7 +153,10 @@ BakeFile read_bake(const fs::path& path) {
         fmt::format("{}: has no hemibake attributes, expected a file of `hemibake bake`", path.string()));
   BakeFile file{make_room(path, header), header.provenance};
   if (!file.bake.bounce.empty()) file.bake.bounce_albedo = read_bounce_albedo(path, header.provenance);
-  read_planes(path, header.width, header.height, planes_of<float>(file.bake));
+  const bool open = header.provenance.value("holes", "") == "open";
+  read_planes(path, header.width, header.height, planes_of<float>(file.bake),
+              open ? MissingValues::kNaN : MissingValues::kRefused);
+  if (open) check_holes(path, file.bake);
   return file;
 }
 

@@ -16,11 +16,13 @@ struct BakeFile {
 // Writes `ao`, `irradiance.00`…, `total`, `residual`, `normal.X/Y/Z`, `bent.X/Y/Z`, and the provenance as
 // attributes `hemibake:NAME` (write_image). A .tif has the same planes as bands, with the map's place. Leaves
 // out planes that are empty. Throws std::logic_error where a plane has another size, all are empty, or a
-// value is not finite; InputError where the file cannot be written.
+// value is not finite, but for holes that the provenance says are open; InputError where the file cannot be
+// written.
 void write_bake(const std::filesystem::path& path, const Bake& bake, const Provenance& provenance);
 
 // Reads bit for bit the planes written; ignores channels of other names. Throws InputError naming the file
-// where it is not a whole, readable bake, or a value in it is not finite.
+// where it is not a whole, readable bake, or a value in it is not finite: NaN in every plane is a hole where
+// the provenance says that holes are open.
 BakeFile read_bake(const std::filesystem::path& path);
 
 }  // namespace hemibake

@@ -109,7 +109,9 @@ std::string describe_map(const LoadedMap& map) {
                                  name_in(kEdgeNames, map.settings.edge));
   if (!map.settings.texel_m.empty())
     text += fmt::format(", made square: {} x {}", map.surface.width(), map.surface.height());
-  if (reading.holes > 0) text += fmt::format(", {} holes filled", reading.holes);
+  if (reading.holes > 0)
+    text += fmt::format(", {} holes {}", reading.holes,
+                        map.settings.holes == Holes::kOpen ? "open: rays see sky through them" : "filled");
   if (is_coarse(reading))
     text += fmt::format(", steps of {:.2g} m (8 bits: AO may be off by {:g})", reading.step_m, kErrorOfBytes);
   if (reading.normals) return text + "\n" + describe_normals(map);
