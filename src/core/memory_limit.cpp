@@ -33,12 +33,12 @@ double memory_for_data() {
   return std::max(0.0, allowed - kProgramBytes);
 }
 
-void require_memory(double bytes, int width, int height) {
+void require_memory(double bytes, const std::string& what) {
   if (bytes <= memory_for_data()) return;
-  throw InputError(
-      fmt::format("has {} x {} texels, which need {:.2f} GiB to be read, expected at most {:.2f} GiB of {}",
-                  width, height, (bytes + kProgramBytes) / kGib, (memory_for_data() + kProgramBytes) / kGib,
-                  allowed_bytes > 0 ? "the memory allowed" : "this machine"));
+  throw InputError(fmt::format("has {}, which need {:.2f} GiB to be read, expected at most {:.2f} GiB of {}",
+                               what, (bytes + kProgramBytes) / kGib,
+                               (memory_for_data() + kProgramBytes) / kGib,
+                               allowed_bytes > 0 ? "the memory allowed" : "this machine"));
 }
 
 }  // namespace hemibake

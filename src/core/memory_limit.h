@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 
 namespace hemibake {
 
@@ -23,8 +24,8 @@ class MemoryScope {
 };
 
 // Throws InputError, without a file's name, where data need more than the limit in force leaves them.
-// bytes: of the data; width, height: what they are of, texels, for the message.
-void require_memory(double bytes, int width, int height);
+// bytes: of the data; what: they are of, for the message: "4096 x 4096 texels".
+void require_memory(double bytes, const std::string& what);
 
 // Returns the bytes that the limit in force leaves to data beside the program itself, at least 0.
 double memory_for_data();

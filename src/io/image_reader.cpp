@@ -80,7 +80,7 @@ void check_tiff(const ChannelReader& reader, const OIIO::ImageSpec& spec) {
 // Throws InputError naming the file where the image takes more memory than there is for it.
 void check_memory(const ChannelReader& reader, double bytes, int64_t width, int64_t height) {
   with_file_context(reader.path(),
-                    [&] { require_memory(bytes, static_cast<int>(width), static_cast<int>(height)); });
+                    [&] { require_memory(bytes, fmt::format("{} x {} texels", width, height)); });
 }
 
 // Refuses what a header claims before the library, which would take its memory on opening, sees the file.
