@@ -17,8 +17,7 @@ namespace {
 
 using std::string_view_literals::operator""sv;
 
-// Block-compressed DDS has 4 bits a texel; run lengths of
-// TGA hold 128 texels of 4 bytes in 2.
+// Run lengths of TGA hold 128 texels of 4 bytes in 2.
 constexpr ImageFormat kPng{"png", "PNG", 0, 0};
 constexpr ImageFormat kJpeg{"jpeg", "JPEG", 0, 3};
 constexpr ImageFormat kTiff{"tiff", "TIFF", 0, 0};
@@ -27,7 +26,6 @@ constexpr ImageFormat kWebp{"webp", "WebP", 0, 2};
 constexpr ImageFormat kHdr{"hdr", "Radiance HDR", 0, 0};
 constexpr ImageFormat kBmp{"bmp", "BMP", 0, 1};
 constexpr ImageFormat kPnm{"pnm", "PNM", 0, 1};
-constexpr ImageFormat kDds{"dds", "DDS", 16, 1};
 constexpr ImageFormat kJpeg2000{"jpeg2000", "JPEG 2000", 0, 16};
 constexpr ImageFormat kFits{"fits", "FITS", 1, 0};
 constexpr ImageFormat kTarga{"targa", "TGA", 256, 1};
@@ -56,7 +54,6 @@ constexpr ReadMark kRead[] = {
     {{0, "#?RADIANCE"sv}, &kHdr},
     {{0, "#?RGBE"sv}, &kHdr},
     {{0, "BM"sv}, &kBmp},
-    {{0, "DDS "sv}, &kDds},
     {{0, "\0\0\0\x0CjP  \r\n\x87\n"sv}, &kJpeg2000},
     {{0, "\xFF\x4F\xFF\x51"sv}, &kJpeg2000},
     {{0, "SIMPLE  ="sv}, &kFits},
@@ -69,6 +66,7 @@ struct OtherMark {
 
 constexpr OtherMark kOthers[] = {
     {{0, "GIF8"sv}, "a GIF"},
+    {{0, "DDS "sv}, "a DDS texture"},
     {{0, "8BPS"sv}, "a Photoshop document"},
     {{0, "\x01\xDA"sv}, "an SGI image"},
     {{0, "FOR4"sv}, "a Maya IFF"},
@@ -132,7 +130,7 @@ const ImageFormat& image_format_of(const std::filesystem::path& path) {
     if (has(head, known.mark)) return *known.format;
   if (is_pnm(head)) return kPnm;
   constexpr const char* kExpected =
-      "PNG, TIFF, OpenEXR, JPEG, WebP, Radiance HDR, BMP, TGA, PNM, PFM, DDS, JPEG 2000 or FITS";
+      "PNG, TIFF, OpenEXR, JPEG, WebP, Radiance HDR, BMP, TGA, PNM, PFM, JPEG 2000 or FITS";
   for (const OtherMark& other : kOthers)
     if (has(head, other.mark))
       throw InputError(
@@ -157,6 +155,22 @@ ImageClaim jpeg2000_claim(const std::filesystem::path& path) {
     return static_cast<int64_t>(bytes.at(start + offset, count));
   };
   return {at(8, 4) - at(16, 4), at(12, 4) - at(20, 4), at(40, 2)};
+}
+
+// Layout: openexr.com/en/latest/OpenEXRFileLayout.html: attributes of name, type, size, value.
+ImageClaim exr_claim(const std::filesystem::path& path) {
+  constexpr std::string_view kWindow = "dataWindow\0box2i\0\x10\0\0\0"sv;
+  std::ifstream file(path, std::ios::binary);
+  std::string block(size_t{1} << 20, '\0');
+  file.read(block.data(), static_cast<std::streamsize>(block.size()));
+  block.resize(static_cast<size_t>(file.gcount()));
+  const size_t start = block.find(kWindow);
+  if (start == std::string::npos) return {};
+  ByteReader bytes(path);
+  const auto at = [&](size_t offset) {
+    return int64_t{static_cast<int32_t>(bytes.at(start + kWindow.size() + offset, 4))};
+  };
+  return {at(8) - at(0) + 1, at(12) - at(4) + 1, 1};
 }
 
 }  // namespace hemibake

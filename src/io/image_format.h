@@ -27,4 +27,8 @@ struct ImageClaim {
 // Returns the size that a JPEG 2000 names, whose reader decodes it on opening; zeros where it names none.
 ImageClaim jpeg2000_claim(const std::filesystem::path& path);
 
+// Returns the data window of the first part of an OpenEXR, whose reader takes memory for its rows on opening;
+// zeros where its header, or its first MiB, has none.
+ImageClaim exr_claim(const std::filesystem::path& path);
+
 }  // namespace hemibake

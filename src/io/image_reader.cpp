@@ -95,6 +95,12 @@ void check_before_opening(const ChannelReader& reader, const ImageFormat& format
                      format.held_per_sample,
                  claim.width, claim.height);
   }
+  if (format.reader == std::string_view("openexr")) {
+    const ImageClaim claim = exr_claim(reader.path());
+    if (claim.width != 0 || claim.height != 0) check_size(reader, claim.width, claim.height);
+    constexpr double kBytesPerRow = 32;  // of the table of offsets, and copies of it
+    check_memory(reader, kBytesPerRow * static_cast<double>(claim.height), claim.width, claim.height);
+  }
   if (format.reader != std::string_view("png")) return;
   PngHeader header;
   if (const std::string fault = png_header_error(reader.path(), header); !fault.empty()) reader.refuse(fault);
