@@ -1,4 +1,5 @@
 // Holes that stay open: no surface there, sky through them, no number in what is written.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -105,7 +106,7 @@ TEST_F(OpenHoles, AFlatPlateSeesTheWholeSky) {
   for (const std::string edge : {"wrap", "open", "ground"}) {
     const Bake planes = bake(map + " --outputs ao --rays 64 --edge " + edge);
     for (size_t i = 0; i < holes_.size(); ++i)
-      if (holes_[i] == 0) EXPECT_EQ(planes.visibility[i], 1) << edge << ", texel " << i;
+      EXPECT_TRUE(holes_[i] == 1 || planes.visibility[i] == 1) << edge << ", texel " << i;
   }
 }
 
@@ -135,8 +136,8 @@ TEST_F(OpenHoles, ChangeNothingWhereThereAreNone) {
   write_map("map.exr", SyntheticKind::kBricks, 32, 32);
   run_well("bake map.exr -o refuse.exr");
   run_well("bake map.exr -o open.exr --holes open");
-  EXPECT_TRUE(read_bake(folder_ / "refuse.exr").bake.visibility ==
-              read_bake(folder_ / "open.exr").bake.visibility);
+  EXPECT_EQ(read_bake(folder_ / "refuse.exr").bake.visibility.values,
+            read_bake(folder_ / "open.exr").bake.visibility.values);
 }
 
 TEST_F(OpenHoles, AreRefusedWhereTheyCannotBe) {
