@@ -212,7 +212,8 @@ BakeSettings recorded_bake_settings(const Provenance& provenance, const std::fil
   try {
     validate(map, settings, [](const std::string&) { return false; });
   } catch (const SettingError& error) {
-    throw InputError(fmt::format("{}: what it records goes not together: {}", bake_path.string(), error.what()));
+    throw InputError(
+        fmt::format("{}: what it records goes not together: {}", bake_path.string(), error.what()));
   }
   return settings;
 }

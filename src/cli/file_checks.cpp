@@ -140,7 +140,8 @@ Checks checks_of_bake(const BakeFile& file, std::optional<double> tolerance) {
   if (const auto row_sum_error = number_entry(p, "row_sum_error", 0, kMostError))
     options.link_energy = LinkEnergy{*row_sum_error, number_entry(p, "light_over_opening", 0, kMostError),
                                      number_entry(p, "light_over_opening_stderr", 0, kMostError).value_or(0)};
-  options.tiled_with_own_normals = text_entry(p, "edge") == "wrap" && text_entry(p, "normals").starts_with("from ");
+  options.tiled_with_own_normals =
+      text_entry(p, "edge") == "wrap" && text_entry(p, "normals").starts_with("from ");
   return check_bake(file.bake, options);
 }
 

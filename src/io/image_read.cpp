@@ -45,9 +45,9 @@ ImageHeader read_image_header(const fs::path& path) {
   const OIIO::ImageSpec& spec = reader.spec();
   ImageHeader header{reader.width(), reader.height(), spec.channelnames, nullptr};
   const std::string text(spec.get_string_attribute("hemibake:provenance"));
-  header.provenance =
-      text.empty() ? provenance_in_description(spec)
-                   : parse_provenance(text, path.string() + ": attribute hemibake:provenance");
+  header.provenance = text.empty()
+                          ? provenance_in_description(spec)
+                          : parse_provenance(text, path.string() + ": attribute hemibake:provenance");
   return header;
 }
 

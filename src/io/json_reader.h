@@ -16,7 +16,8 @@ namespace hemibake {
 class JsonReader {
  public:
   // place: of the document: "FILE", or "FILE: attribute NAME" for a single value.
-  JsonReader(const nlohmann::ordered_json& json, std::string place) : json_(&json), place_(std::move(place)) {}
+  JsonReader(const nlohmann::ordered_json& json, std::string place)
+      : json_(&json), place_(std::move(place)) {}
 
   bool is_null() const;
   bool is_text() const;

@@ -21,8 +21,8 @@ using Members = std::vector<std::pair<const std::string, Json>>;
 class Builder : public nlohmann::json_sax<Json> {
  public:
   Json document;
-  std::string fault;        // empty: none
-  size_t position = 0;      // bytes up to the fault, where the parser knows
+  std::string fault;    // empty: none
+  size_t position = 0;  // bytes up to the fault, where the parser knows
   bool at_position = false;
 
   bool null() override { return add(nullptr); }
@@ -39,7 +39,8 @@ class Builder : public nlohmann::json_sax<Json> {
   }
   bool key(string_t& name) override {
     if (!names_.back().insert(name).second)
-      return refuse(fmt::format("the name '{}' is there twice in an object, expected it once", excerpt(name)));
+      return refuse(
+          fmt::format("the name '{}' is there twice in an object, expected it once", excerpt(name)));
     name_ = std::move(name);
     return true;
   }
@@ -53,7 +54,8 @@ class Builder : public nlohmann::json_sax<Json> {
   bool parse_error(size_t byte, const std::string& token, const nlohmann::detail::exception&) override {
     position = byte;
     at_position = true;
-    return refuse(fmt::format("'{}' does not go on as JSON, expected a whole document of it", excerpt(token)));
+    return refuse(
+        fmt::format("'{}' does not go on as JSON, expected a whole document of it", excerpt(token)));
   }
 
  private:
@@ -97,7 +99,8 @@ class Builder : public nlohmann::json_sax<Json> {
 std::string line_and_column(std::string_view text, size_t position) {
   const std::string_view before = text.substr(0, position > 0 ? position - 1 : 0);
   const size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0
-  return fmt::format("line {}, column {}", 1 + std::ranges::count(before, '\n'), before.size() - line_begin + 1);
+  return fmt::format("line {}, column {}", 1 + std::ranges::count(before, '\n'),
+                     before.size() - line_begin + 1);
 }
 
 }  // namespace
@@ -109,8 +112,7 @@ nlohmann::ordered_json parse_json(std::string_view text, const std::string& plac
   Builder builder;
   if (Json::sax_parse(text.begin(), text.end(), &builder)) return std::move(builder.document);
   if (!builder.at_position) throw InputError(fmt::format("{}: {}", place, builder.fault));
-  throw InputError(
-      fmt::format("{}: {}: {}", place, line_and_column(text, builder.position), builder.fault));
+  throw InputError(fmt::format("{}: {}: {}", place, line_and_column(text, builder.position), builder.fault));
 }
 
 }  // namespace hemibake

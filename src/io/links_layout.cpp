@@ -21,7 +21,7 @@ constexpr std::string_view kMark = "hemibake links 1 ";
 constexpr std::string_view kHdf5Mark = "\x89HDF\r\n\x1a\n";
 constexpr size_t kSizeDigits = 16, kHashDigits = 64;
 constexpr size_t kFirstLineBytes = kMark.size() + kSizeDigits + 1 + kHashDigits + 1;
-constexpr uint64_t kLeastHeadBytes = 512;    // of HDF5
+constexpr uint64_t kLeastHeadBytes = 512;     // of HDF5
 constexpr uint64_t kBytesOfLayout = 1 << 11;  // more than seven arrays of largest numbers take
 constexpr uint64_t kMostHeadBytes = 2 * kMaxJsonBytes;
 // Most rows or columns of a matrix: the facets of the largest map.
@@ -78,10 +78,9 @@ LinksLayout layout_from(const JsonReader& json, uint64_t end) {
   const StoredMatrix& patches = layout.patches ? *layout.patches : layout.gather;
   if (patches.rows != layout.gather.columns || patches.columns != patches.rows ||
       layout.direct.count != patches.rows)
-    throw InputError(
-        fmt::format("{}: gather is {} x {}, patches {} x {}, direct {}: the patches do not agree", json.place(),
-                    layout.gather.rows, layout.gather.columns, patches.rows, patches.columns,
-                    layout.direct.count));
+    throw InputError(fmt::format(
+        "{}: gather is {} x {}, patches {} x {}, direct {}: the patches do not agree", json.place(),
+        layout.gather.rows, layout.gather.columns, patches.rows, patches.columns, layout.direct.count));
   return layout;
 }
 
@@ -100,7 +99,8 @@ std::string read_head(const fs::path& path) {
   uint64_t bytes = 0;
   const char* digits = line.data() + kMark.size();
   const auto [end, error] = std::from_chars(digits, digits + kSizeDigits, bytes);
-  if (error != std::errc() || end != digits + kSizeDigits || bytes < kLeastHeadBytes || bytes > kMostHeadBytes)
+  if (error != std::errc() || end != digits + kSizeDigits || bytes < kLeastHeadBytes ||
+      bytes > kMostHeadBytes)
     refuse_links(path, "its head has no size");
   std::string rest(bytes - kFirstLineBytes, '\0');
   if (!file.read(rest.data(), static_cast<std::streamsize>(rest.size())))
@@ -113,7 +113,8 @@ std::string read_head(const fs::path& path) {
 }  // namespace
 
 uint64_t links_head_bytes(const Provenance& provenance) {
-  return std::bit_ceil(std::max(kLeastHeadBytes, kFirstLineBytes + kBytesOfLayout + provenance.dump().size()));
+  return std::bit_ceil(
+      std::max(kLeastHeadBytes, kFirstLineBytes + kBytesOfLayout + provenance.dump().size()));
 }
 
 std::string links_head(const LinksLayout& layout, uint64_t head_bytes) {
@@ -123,7 +124,8 @@ std::string links_head(const LinksLayout& layout, uint64_t head_bytes) {
                      {"direct", json_from(layout.direct)},
                      {"provenance", layout.provenance}};
   std::string rest = json.dump();
-  if (rest.size() + kFirstLineBytes > head_bytes) throw std::logic_error("the head of a links file has no room");
+  if (rest.size() + kFirstLineBytes > head_bytes)
+    throw std::logic_error("the head of a links file has no room");
   rest.resize(head_bytes - kFirstLineBytes, ' ');
   return fmt::format("{}{:016} {}\n{}", kMark, head_bytes, sha256_of(rest), rest);
 }

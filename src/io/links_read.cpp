@@ -23,7 +23,8 @@ static_assert(std::endian::native == std::endian::little, "arrays are read as th
 
 class LinksSource {
  public:
-  explicit LinksSource(const fs::path& path) : path_(path), file_(std::fopen(path.c_str(), "rb"), std::fclose) {
+  explicit LinksSource(const fs::path& path)
+      : path_(path), file_(std::fopen(path.c_str(), "rb"), std::fclose) {
     if (!file_) throw InputError(fmt::format("{}: could not read: {}", path.string(), std::strerror(errno)));
   }
 

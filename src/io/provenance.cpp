@@ -24,8 +24,8 @@ constexpr size_t kHashBlockBytes = size_t{1} << 20;
 
 // Entries that are a text in every file that has them.
 constexpr std::array<std::string_view, 14> kTexts = {
-    "version",     "command",        "input",   "input_sha256",  "input_path",  "normals_path", "normals_sha256",
-    "geo_crs",     "geo_transform",  "geo_nodata", "texture",    "tracer",      "edge",         "normals"};
+    "version", "command",       "input",      "input_sha256", "input_path", "normals_path", "normals_sha256",
+    "geo_crs", "geo_transform", "geo_nodata", "texture",      "tracer",     "edge",         "normals"};
 
 }  // namespace
 
@@ -48,7 +48,8 @@ Provenance parse_provenance(std::string_view text, const std::string& place) {
 
 void check_read_provenance(const JsonReader& provenance) {
   for (const auto& [name, value] : provenance.members()) {
-    if (!value.is_text() && !value.is_number() && !value.is_flag()) value.refuse("a text, a number, or true or false");
+    if (!value.is_text() && !value.is_number() && !value.is_flag())
+      value.refuse("a text, a number, or true or false");
     if (std::ranges::find(kTexts, name) != kTexts.end()) value.text();
   }
 }

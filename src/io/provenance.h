@@ -25,9 +25,8 @@ Provenance make_provenance(std::string_view command, const std::filesystem::path
 // Returns `version` and `command`, for results made from no input.
 Provenance make_provenance(std::string_view command);
 
-// Parses a provenance out of a file. Throws InputError "PLACE: …" where it is no JSON object of scalars, or an
-// entry that is a text in every file is none.
-// place: for errors: "FILE: attribute hemibake:provenance".
+// Parses a provenance out of a file. Throws InputError "PLACE: …" where it is no JSON object of scalars, or
+// an entry that is a text in every file is none. place: for errors: "FILE: attribute hemibake:provenance".
 Provenance parse_provenance(std::string_view text, const std::string& place);
 
 // Throws InputError where a value out of a file is no provenance.

@@ -63,7 +63,8 @@ std::string column_error(const std::vector<std::string>& columns) {
   std::unordered_set<std::string_view> names;
   for (size_t i = 0; i < columns.size(); ++i) {
     if (columns[i].empty()) return fmt::format("column {} has no name", i + 1);
-    if (!names.insert(columns[i]).second) return fmt::format("column '{}' is there twice", excerpt(columns[i]));
+    if (!names.insert(columns[i]).second)
+      return fmt::format("column '{}' is there twice", excerpt(columns[i]));
   }
   return "";
 }

@@ -103,9 +103,9 @@ Study run_study(const StudyOptions& options) {
   forget_reference_without_planes(options, reference_record);
 
   Study study;
-  study.reference = recorded<ReferenceFacts>({reference_record, "reference"}, key, study.made_now,
-                                             reference_facts_from,
-                                             [&options] { return make_reference_files(options); });
+  study.reference =
+      recorded<ReferenceFacts>({reference_record, "reference"}, key, study.made_now, reference_facts_from,
+                               [&options] { return make_reference_files(options); });
   for (const char* name : {"runs", "planes", "errors"}) fs::create_directories(options.folder / name);
   const std::vector<TradeRun> sweep = make_sweep(options.reference.effort, study.reference.can_halve);
   Progress progress("trade", sweep.size(), "run");

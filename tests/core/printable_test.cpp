@@ -28,7 +28,7 @@ TEST(Printable, NoEscapeSequencePasses) {
 
 TEST(Printable, WhatIsNoUtf8IsReplaced) {
   EXPECT_EQ(printable_text("map \xff.png"), "map \uFFFD.png");
-  EXPECT_EQ(printable_text("\xC0\x9B"), "\uFFFD\uFFFD");          // longer than needed
+  EXPECT_EQ(printable_text("\xC0\x9B"), "\uFFFD\uFFFD");            // longer than needed
   EXPECT_EQ(printable_text("\xED\xA0\x80"), "\uFFFD\uFFFD\uFFFD");  // half of a pair
   EXPECT_EQ(printable_text("\xF4\x90\x80\x80"), "\uFFFD\uFFFD\uFFFD\uFFFD");
   EXPECT_EQ(printable_text("\xE2\x82"), "\uFFFD\uFFFD");  // cut short
