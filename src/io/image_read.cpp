@@ -51,7 +51,8 @@ ImageHeader read_image_header(const fs::path& path) {
   return header;
 }
 
-void read_planes(const fs::path& path, int width, int height, std::span<const MutablePlane> planes) {
+void read_planes(const fs::path& path, int width, int height, std::span<const MutablePlane> planes,
+                 MissingValues missing) {
   ImageReader reader(path);
   check_size(reader, width, height, "");
   const std::vector<std::string>& channels = reader.facts().channels;
@@ -62,7 +63,7 @@ void read_planes(const fs::path& path, int width, int height, std::span<const Mu
       reader.refuse(fmt::format("has no channel '{}', only {}", plane.channel, fmt::join(channels, ", ")));
     indices.push_back(static_cast<int>(found - channels.begin()));
   }
-  if (!planes.empty()) reader.fill(planes, indices);
+  if (!planes.empty()) reader.fill(planes, indices, missing);
 }
 
 Grid<float> read_height_map(const fs::path& path, const std::string& channel) {

@@ -23,9 +23,10 @@ namespace {
 constexpr size_t kHashBlockBytes = size_t{1} << 20;
 
 // Entries that are a text in every file that has them.
-constexpr std::array<std::string_view, 14> kTexts = {
-    "version", "command",       "input",      "input_sha256", "input_path", "normals_path", "normals_sha256",
-    "geo_crs", "geo_transform", "geo_nodata", "texture",      "tracer",     "edge",         "normals"};
+constexpr std::array<std::string_view, 15> kTexts = {
+    "version",      "command",        "input",   "input_sha256",  "input_path",
+    "normals_path", "normals_sha256", "geo_crs", "geo_transform", "geo_nodata",
+    "texture",      "tracer",         "edge",    "holes",         "normals"};
 
 }  // namespace
 
