@@ -79,6 +79,8 @@ int run(const ParsedCommand& parsed, const Context& context) {
 
 }  // namespace
 
+std::span<const Command> commands() { return kCommands; }
+
 int run_command_line(int argc, char** argv) {
   try {
     const auto parsed = parse_command_line(argc, argv, kCommands);
