@@ -101,7 +101,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: %s CORPUS [MUTATIONS [TARGET…]]\n", argv[0]);
     return 2;
   }
-  for (const int number : {SIGABRT, SIGALRM, SIGBUS, SIGFPE, SIGILL, SIGSEGV}) signal(number, hemibake::on_crash);
+  for (const int number : {SIGABRT, SIGALRM, SIGBUS, SIGFPE, SIGILL, SIGSEGV})
+    signal(number, hemibake::on_crash);
   if (!std::freopen("/dev/null", "w", stdout)) return 1;
   const uint64_t mutations = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 0;
   return hemibake::replay(argv[1], mutations, {argv + std::min(argc, 3), argv + argc});

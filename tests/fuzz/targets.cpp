@@ -32,14 +32,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a map or an image may hold here: far more than the corpus, little enough for thousands of runs a minute.
+// What a map or an image may hold here: far more than the corpus, little enough for thousands of runs a
+// minute.
 constexpr int kMostPixels = 1 << 22;
 
 // Returns a file of that name that holds `bytes`, in a folder that lives as long as the process.
 fs::path file_of(const char* name, std::string_view bytes) {
   static const TemporaryFolder folder;
   const fs::path path = folder / name;
-  std::ofstream(path, std::ios::binary | std::ios::trunc).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(path, std::ios::binary | std::ios::trunc)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   return path;
 }
 

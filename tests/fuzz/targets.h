@@ -7,7 +7,7 @@
 namespace hemibake {
 
 struct FuzzTarget {
-  const char* name;                    // also of its folder of the corpus
+  const char* name;                     // also of its folder of the corpus
   void (*read)(std::string_view file);  // may throw anything
 };
 
