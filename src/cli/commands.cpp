@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 
 #include "bake/settings.h"
@@ -16,6 +17,7 @@
 #include "cli/signals.h"
 #include "core/error.h"
 #include "io/provenance.h"
+#include "tracers/slice/instruction_sets.h"
 
 namespace hemibake {
 
@@ -79,8 +81,12 @@ int run(const ParsedCommand& parsed, const Context& context) {
 
 }  // namespace
 
+std::span<const Command> commands() { return kCommands; }
+
 int run_command_line(int argc, char** argv) {
   try {
+    // For tests: the bytes of a bake are the same on each.
+    if (const char* name = std::getenv("HEMIBAKE_TARGETS")) use_instruction_set(name);
     const auto parsed = parse_command_line(argc, argv, kCommands);
     return parsed ? run(*parsed, context_of(*parsed, argc, argv)) : 0;
   } catch (const SettingError& error) {
