@@ -1,7 +1,5 @@
 #include "bake/plan.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -114,10 +112,6 @@ BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptio
   if (!options.with_links) plan.link_bytes = 0;
   plan.bounce_cpu_seconds = static_cast<double>(plan.links) * options.bounces * kSecondsPerLink;
   return plan;
-}
-
-size_t machine_memory_bytes() {
-  return static_cast<size_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<size_t>(sysconf(_SC_PAGE_SIZE));
 }
 
 }  // namespace hemibake

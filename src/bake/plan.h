@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "core/memory_limit.h"
 #include "surface/patches.h"
 #include "surface/surface.h"
 #include "tracers/tracer.h"
@@ -43,8 +44,5 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options);
 // Adds links and seconds from a pilot of a thousand texels and as many patches, in groups spread over the
 // map.
 BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptions& options);
-
-// Memory of this machine, bytes.
-size_t machine_memory_bytes();
 
 }  // namespace hemibake

@@ -18,6 +18,7 @@
 #include "cli/print/warnings.h"
 #include "cli/result_folder.h"
 #include "core/error.h"
+#include "core/memory_limit.h"
 #include "io/file_context.h"
 #include "io/output_file.h"
 
@@ -66,6 +67,7 @@ MapOutcome say_beforehand(const BakeCommandOptions& options, const PreparedBake&
 MapOutcome bake_one(BakeCommandOptions options, Again again, const Invocation& invocation) {
   if (options.writes()) check_outputs(options);
   options.bake.spill_folder = options.output.parent_path();
+  const MemoryScope memory(options.bake.memory_gib);
   const LoadedMap map = load_map(options.map, options.bake.normal_length);
   if (again == Again::kSkip && records(options.output, wanted_record(map, options.bake)))
     return skipped(options.map.map, options.output);

@@ -20,6 +20,7 @@
 #include "cli/result_folder.h"
 #include "core/context.h"
 #include "core/error.h"
+#include "core/memory_limit.h"
 #include "curves/curves.h"
 #include "fitting/models.h"
 #include "io/bake_file.h"
@@ -90,6 +91,7 @@ MapOutcome run_one(RunOptions options, Again again, const Invocation& invocation
   check_outputs(options);
 
   options.bake.spill_folder = options.folder;
+  const MemoryScope memory(options.bake.memory_gib);
   const LoadedMap map = load_map(options.map, options.bake.normal_length);
   if (again == Again::kSkip && was_run(options, map)) return skipped(options.map.map, options.folder);
   print_warnings(options.map.map.string(), warnings_of(map));

@@ -17,6 +17,7 @@
 #include "cli/print/warnings.h"
 #include "cli/result_folder.h"
 #include "core/error.h"
+#include "core/memory_limit.h"
 #include "io/bake_file.h"
 #include "io/file_context.h"
 #include "io/image_io.h"
@@ -141,6 +142,7 @@ void resolve_bake_of_map(TexturesOptions& options, const Invocation& invocation)
 LoadedMap load_map_to_bake(TexturesOptions& options, const Invocation& invocation) {
   try {
     resolve_bake_of_map(options, invocation);
+    const MemoryScope memory(options.bake.memory_gib);
     return load_map(options.map, options.bake.normal_length);
   } catch (const SettingError& error) {
     throw InputError(with_names_of_textures(error.with_prefix("--")));

@@ -8,6 +8,7 @@
 #include "cli/options/bake_options.h"
 #include "cli/print/study.h"
 #include "cli/result_folder.h"
+#include "core/memory_limit.h"
 #include "io/table_io.h"
 #include "trade/study.h"
 #include "trade/trade_file.h"
@@ -42,6 +43,7 @@ int run_trade(TradeOptions& options, const Invocation& invocation) {
   record_map(options.map, hash_files(options.map), study.provenance);
   // Runs in the child: this process must not start threads.
   study.load = [&options] {
+    const MemoryScope memory(options.memory_gib);
     Surface surface = load_map(options.map).surface;
     if (!surface.holes.empty())
       throw InputError(options.map.map.string() +

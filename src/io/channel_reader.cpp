@@ -8,6 +8,8 @@
 #include <charconv>
 
 #include "core/error.h"
+#include "core/memory_limit.h"
+#include "io/file_context.h"
 
 namespace hemibake {
 namespace {
@@ -26,6 +28,12 @@ std::optional<int> parse_index(const std::string& text, int count) {
 }
 
 }  // namespace
+
+void ChannelReader::require_bytes_per_texel(double bytes) const {
+  const double texels = static_cast<double>(facts_.width) * facts_.height;
+  with_file_context(
+      path_, [&] { require_memory(texels * bytes, fmt::format("{} x {} texels", width(), height())); });
+}
 
 void ChannelReader::refuse(const std::string& fault) const {
   throw InputError(fmt::format("{}: {}", path_.string(), fault));

@@ -68,6 +68,9 @@ class ChannelReader {
     }
   }
 
+  // Throws InputError where values of that many bytes a texel do not fit the memory that there is for them.
+  void require_bytes_per_texel(double bytes) const;
+
   // Throws InputError of one line naming the file.
   [[noreturn]] void refuse(const std::string& fault) const;
 

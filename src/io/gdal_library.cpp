@@ -23,7 +23,7 @@ constexpr const char* kDriverFunctions[] = {
 constexpr const char* kOptions[][2] = {
     {"CPL_VSIL_CURL_ALLOWED_EXTENSIONS", "none"},  // no network
     {"GDAL_VRT_ENABLE_PYTHON", "NO"},
-    {"GDAL_CACHEMAX", "256"},  // MB
+    {"GDAL_CACHEMAX", "64"},  // MB
 };
 
 [[noreturn]] void refuse_library(const std::string& fault) {

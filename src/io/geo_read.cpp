@@ -8,9 +8,12 @@
 
 #include "core/context.h"
 #include "core/error.h"
+#include "core/memory_limit.h"
 #include "io/file_context.h"
 #include "io/geo_band.h"
 #include "io/geo_place.h"
+#include "io/height_sink.h"
+#include "io/input_file.h"
 #include "io/netcdf_check.h"
 #include "io/output_file.h"
 #include "surface/surface.h"
@@ -24,12 +27,41 @@ constexpr int64_t kValuesPerBlock = int64_t{1} << 21;
 // Heights over the longer side of a map whose coordinates can only be degrees.
 constexpr double kSteepestLand = 2;
 
-constexpr const char* kNetworkSources[] = {"/vsicurl", "/vsis3",    "/vsigs",   "/vsiaz",     "/vsiadls",
-                                           "/vsioss",  "/vsiswift", "/vsihdfs", "/vsiwebhdfs"};
+constexpr const char* kNetworkSources[] = {"/vsicurl", "/vsis3",    "/vsigs",   "/vsiaz",      "/vsiadls",
+                                           "/vsioss",  "/vsiswift", "/vsihdfs", "/vsiwebhdfs", "/vsistdin"};
+constexpr int kMostNestedSources = 8;  // VRTs of VRTs
+constexpr size_t kMostVrtBytes = size_t{1} << 26;
 
-// Refuses a VRT that names anything but files of this machine.
-void check_sources(const fs::path& path) {
+// Returns the names between the tags of sources: <SourceFilename relativeToVRT="1">a.tif</SourceFilename>.
+std::vector<std::string> vrt_sources(const fs::path& path) {
+  const std::string text = read_whole_file(path);
+  std::vector<std::string> names;
+  for (size_t at = text.find("<Source"); at != std::string::npos; at = text.find("<Source", at + 1)) {
+    const size_t begin = text.find('>', at), end = text.find("</", at);
+    if (begin < end && end != std::string::npos) names.push_back(text.substr(begin + 1, end - begin - 1));
+  }
+  return names;
+}
+
+// Returns the file of this machine that a name of GDAL stands for: of an archive, the archive.
+fs::path file_of(std::string name) {
+  while (name.starts_with("/vsi")) {
+    const size_t slash = name.find('/', 1);
+    name = slash == std::string::npos ? "" : name.substr(slash + 1);
+  }
+  return name;
+}
+
+// Refuses a VRT that names anything but regular files of this machine: what else is there may block.
+// depth: of VRTs that led to it.
+void check_sources(const fs::path& path, int depth = 0) {
   if (lower_case_extension(path) != ".vrt") return;
+  if (depth > kMostNestedSources)
+    throw InputError(
+        fmt::format("names itself or more than {} files within files, expected rasters", kMostNestedSources));
+  std::error_code ignored;
+  if (fs::file_size(path, ignored) > kMostVrtBytes)
+    throw InputError(fmt::format("has over {} MiB of text, expected a VRT", kMostVrtBytes >> 20));
   std::ifstream file(path, std::ios::binary);
   for (std::string line; std::getline(file, line);) {
     const auto names = [&](const char* text) { return line.find(text) != std::string::npos; };
@@ -37,9 +69,19 @@ void check_sources(const fs::path& path) {
       throw InputError(
           "names a source that is no file here, expected files of this machine: fetch them first");
   }
+  for (const std::string& name : vrt_sources(path)) {
+    const fs::path source = file_of(name);
+    for (const fs::path& place : {path.parent_path() / source, source}) {
+      const fs::file_status status = fs::status(place, ignored);
+      if (!fs::exists(status)) continue;
+      if (!fs::is_regular_file(status) && !fs::is_directory(status))
+        throw InputError(fmt::format("names a source that is no regular file ({}), expected rasters", name));
+      check_sources(place, depth + 1);
+    }
+  }
 }
 
-GdalDataset open_dataset(const GdalLibrary& gdal, const fs::path& path, const GdalFaults& faults) {
+GdalDataset open_dataset(const GdalLibrary& gdal, const fs::path& path) {
   check_sources(path);
   if (const std::string fault = netcdf_error(path); !fault.empty()) throw InputError(fault);
   GdalDataset dataset(gdal.GDALOpenEx(fs::absolute(path).string().c_str(),
@@ -47,7 +89,8 @@ GdalDataset open_dataset(const GdalLibrary& gdal, const fs::path& path, const Gd
                                       nullptr, nullptr));
   if (!dataset)
     throw InputError(
-        fmt::format("is not terrain that can be read ({}), expected a raster of heights", faults.text()));
+        "is not terrain that can be read (damaged, cut short, or of a kind that is not read), expected a "
+        "raster of heights");
   return dataset;
 }
 
@@ -59,15 +102,20 @@ GeoRaster checked_raster(const GdalLibrary& gdal, GDALDatasetH dataset, const fs
   if (static_cast<uint64_t>(raster.width) * static_cast<uint64_t>(raster.height) > kMaxTexels)
     throw InputError(
         fmt::format("claims {} x {} texels, expected at most {}", raster.width, raster.height, kMaxTexels));
+  const double texels = static_cast<double>(raster.width) * raster.height;
+  int block_width = 0, block_height = 0;
+  gdal.GDALGetBlockSize(gdal.GDALGetRasterBand(dataset, 1), &block_width, &block_height);
+  require_memory(
+      texels * kHeightBytesPerTexel + sizeof(double) * block_width * static_cast<double>(block_height),
+      fmt::format("{} x {} texels", raster.width, raster.height));
   return raster;
 }
 
 // Reads heights and holes by blocks of rows.
 class BandReader {
  public:
-  BandReader(const GeoRaster& raster, const GeoBand& band, const GdalFaults& faults,
-             std::optional<double> no_data)
-      : raster_(raster), band_(band), faults_(faults), no_data_(no_data) {
+  BandReader(const GeoRaster& raster, const GeoBand& band, std::optional<double> no_data)
+      : raster_(raster), band_(band), no_data_(no_data) {
     int block_width = 0, block_height = 1;
     raster_.gdal.GDALGetBlockSize(band_.handle, &block_width, &block_height);
     const int most = static_cast<int>(std::max<int64_t>(1, kValuesPerBlock / raster_.width));
@@ -111,9 +159,8 @@ class BandReader {
     const auto take = [&](GDALRasterBandH band, void* values, GDALDataType type) {
       if (raster_.gdal.GDALRasterIO(band, GF_Read, 0, begin, raster_.width, count, values, raster_.width,
                                     count, type, 0, 0) != CE_None)
-        throw InputError(
-            fmt::format("cannot be read from row {} on, it may be cut short ({}), expected a whole file",
-                        begin, faults_.text()));
+        throw InputError(fmt::format(
+            "cannot be read from row {} on, it may be damaged or cut short, expected a whole file", begin));
     };
     take(band_.handle, stored_.data(), GDT_Float64);
     if (band_.mask) take(band_.mask, mask_.data(), GDT_Byte);
@@ -121,7 +168,6 @@ class BandReader {
 
   const GeoRaster& raster_;
   const GeoBand& band_;
-  const GdalFaults& faults_;
   std::optional<double> no_data_;
   int rows_ = 1;
   std::vector<double> stored_;
@@ -163,7 +209,7 @@ void check_not_degrees(const GeoRaster& raster, const HeightFile& file) {
 std::optional<HeightFile> read_dataset(const fs::path& path, const HeightFileOptions& options) {
   const GdalLibrary& gdal = gdal_library();
   const GdalFaults faults(gdal);
-  GdalDataset dataset = open_dataset(gdal, path, faults);
+  GdalDataset dataset = open_dataset(gdal, path);
   const bool is_variable = gdal.GDALGetRasterCount(dataset.get()) == 0;
   open_variable(gdal, options.channel, dataset);
   const GeoRaster raster = checked_raster(gdal, dataset.get(), path);
@@ -179,7 +225,7 @@ std::optional<HeightFile> read_dataset(const fs::path& path, const HeightFileOpt
   file.channels = band_names(raster);
   file.channel = is_variable && !options.channel.empty() ? options.channel : band.name;
   file.in_metres = true;
-  BandReader(raster, band, faults, options.no_data).read(file);
+  BandReader(raster, band, options.no_data).read(file);
   if (!file.holes.empty() && std::ranges::find(file.holes.values, 0) == file.holes.values.end())
     throw InputError("holds no height at all: every texel is NoData, expected heights");
   if (file.place) {

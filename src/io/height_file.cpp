@@ -237,6 +237,7 @@ void read_split_channels(ChannelReader& reader, const HeightFileOptions& options
 
 HeightFile read_channels(ChannelReader& reader, const HeightFileOptions& options) {
   const ChannelFacts& facts = reader.facts();
+  reader.require_bytes_per_texel(kHeightBytesPerTexel);
   HeightFile file;
   file.format = facts.format;
   file.sample_type = facts.sample_type;

@@ -8,6 +8,9 @@
 
 namespace hemibake {
 
+// Bytes of a texel while heights are read and made a surface: value, hole and mask; copy; normal.
+constexpr double kHeightBytesPerTexel = 6 + 4 + 12;
+
 class HeightSink {
  public:
   // path: for errors. no_data: stored value that stands for no height.

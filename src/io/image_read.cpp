@@ -70,6 +70,7 @@ Grid<float> read_height_map(const fs::path& path, const std::string& channel) {
   ImageReader reader(path);
   const std::optional<int> chosen = choose_channel(reader.facts(), channel);
   if (!chosen) refuse_channel(reader, channel);
+  reader.require_bytes_per_texel(sizeof(float));
   Grid<float> heights(reader.width(), reader.height());
   const MutablePlane plane{reader.facts().channels[static_cast<size_t>(*chosen)], heights.values.data()};
   reader.fill({&plane, 1}, {&*chosen, 1});
@@ -89,6 +90,7 @@ NormalImage read_normal_map(const fs::path& path, int width, int height,
         fmt::format("is stored turned (orientation {}), which leaves the directions of its normals "
                     "open, expected a normal map saved upright",
                     facts.orientation));
+  reader.require_bytes_per_texel(sizeof(glm::vec3));
   NormalImage image{
       Grid<glm::vec3>(width, height, glm::vec3(0)), !reader.spec().format.is_floating_point(), {}};
   std::vector<int> indices = channels.empty() ? normal_channels(facts.channels) : std::vector<int>();
@@ -109,6 +111,7 @@ NormalImage read_normal_map(const fs::path& path, int width, int height,
 ColorImage read_color_image(const fs::path& path) {
   ImageReader reader(path);
   const OIIO::ImageSpec& spec = reader.spec();
+  reader.require_bytes_per_texel(sizeof(glm::vec3));
   ColorImage image{Grid<glm::vec3>(reader.width(), reader.height()), !spec.format.is_floating_point()};
   std::vector<MutablePlane> planes;
   std::vector<int> indices;

@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <numeric>
+#include <string_view>
 
 #include "core/context.h"
+#include "core/memory_limit.h"
 #include "core/parallel.h"
+#include "io/file_context.h"
 #include "io/png_check.h"
 #include "surface/surface.h"
 
@@ -23,15 +24,9 @@ namespace fs = std::filesystem;
 constexpr int64_t kValuesPerBlock = int64_t{1} << 21;
 constexpr int kMaxRowsPerBlock = 64;
 constexpr int kMaxParts = 10000;
+constexpr int kMaxChannels = 4096;
 // Resolutions are rounded to whole pixels per metre: less than this is rounding.
 constexpr double kLeastAspect = 1e-3;
-
-// Joins the lines of a message of OpenImageIO.
-std::string one_line(std::string text) {
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
 
 void check_regular_file(const ChannelReader& reader) {
   std::error_code error;
@@ -42,14 +37,18 @@ void check_regular_file(const ChannelReader& reader) {
   if (fs::file_size(reader.path(), error) == 0 && !error) reader.refuse("is empty, expected an image");
 }
 
-void check_usable(const ChannelReader& reader, const OIIO::ImageSpec& spec) {
-  const auto texels =
-      static_cast<uint64_t>(std::max(0, spec.width)) * static_cast<uint64_t>(std::max(0, spec.height));
-  if (texels == 0 || spec.nchannels < 1)
-    reader.refuse(fmt::format("holds {} x {} texels, expected at least one", spec.width, spec.height));
+void check_size(const ChannelReader& reader, int64_t width, int64_t height) {
+  const auto texels = static_cast<uint64_t>(std::max<int64_t>(0, width)) *
+                      static_cast<uint64_t>(std::max<int64_t>(0, height));
+  if (texels == 0) reader.refuse(fmt::format("holds {} x {} texels, expected at least one", width, height));
   if (texels > kMaxTexels)
-    reader.refuse(
-        fmt::format("claims {} x {} texels, expected at most {}", spec.width, spec.height, kMaxTexels));
+    reader.refuse(fmt::format("claims {} x {} texels, expected at most {}", width, height, kMaxTexels));
+}
+
+void check_usable(const ChannelReader& reader, const OIIO::ImageSpec& spec) {
+  check_size(reader, spec.width, spec.height);
+  if (spec.nchannels < 1 || spec.nchannels > kMaxChannels)
+    reader.refuse(fmt::format("holds {} channels, expected 1 to {}", spec.nchannels, kMaxChannels));
   if (spec.deep) reader.refuse("is a deep image, expected one value per texel and channel");
   if (spec.depth > 1)
     reader.refuse(fmt::format("is a volume of {} slices, expected a flat image", spec.depth));
@@ -78,31 +77,87 @@ void check_tiff(const ChannelReader& reader, const OIIO::ImageSpec& spec) {
     reader.refuse("stores white as the least value in more than 8 bits, expected black there");
 }
 
-std::unique_ptr<OIIO::ImageInput> open_image(const ChannelReader& reader) {
-  OIIO::ImageSpec hints;
+// Throws InputError naming the file where the image takes more memory than there is for it.
+void check_memory(const ChannelReader& reader, double bytes, int64_t width, int64_t height) {
+  with_file_context(reader.path(),
+                    [&] { require_memory(bytes, fmt::format("{} x {} texels", width, height)); });
+}
+
+// Refuses what a header claims before the library, which would take its memory on opening, sees the file.
+void check_before_opening(const ChannelReader& reader, const ImageFormat& format) {
+  if (format.reader == std::string_view("jpeg2000")) {
+    const ImageClaim claim = jpeg2000_claim(reader.path());
+    if (claim.width < 1 || claim.height < 1 || claim.channels < 1)
+      reader.refuse("has a damaged header, expected a whole JPEG 2000");
+    check_size(reader, claim.width, claim.height);
+    check_memory(reader,
+                 static_cast<double>(claim.width * claim.height) * static_cast<double>(claim.channels) *
+                     format.held_per_sample,
+                 claim.width, claim.height);
+  }
+  if (format.reader == std::string_view("openexr")) {
+    const ImageClaim claim = exr_claim(reader.path());
+    if (claim.width != 0 || claim.height != 0) check_size(reader, claim.width, claim.height);
+    constexpr double kBytesPerRow = 32;  // of the table of offsets, and copies of it
+    check_memory(reader, kBytesPerRow * static_cast<double>(claim.height), claim.width, claim.height);
+  }
+  if (format.reader != std::string_view("png")) return;
+  PngHeader header;
+  if (const std::string fault = png_header_error(reader.path(), header); !fault.empty()) reader.refuse(fault);
+  check_size(reader, header.width, header.height);
+  // The reader holds the whole of an interlaced image, its palette as colours.
+  const double samples = static_cast<double>(header.width) * header.height * (header.channels + 3);
+  check_memory(reader, header.is_interlaced ? samples * std::max(1, header.bits / 8) : 0, header.width,
+               header.height);
+  if (const std::string fault = png_error(reader.path(), header); !fault.empty()) reader.refuse(fault);
+}
+
+// Opens the image with the reader of its format and no other.
+InputPointer open_image(const ChannelReader& reader, const ImageFormat& format) {
+  OIIO::ImageSpec hints, spec;
   hints.attribute("oiio:UnassociatedAlpha", 1);
-  auto input = OIIO::ImageInput::open(reader.path().string(), &hints);
-  if (!input) reader.refuse(fmt::format("is not an image that can be read ({})", one_line(OIIO::geterror())));
+  InputPointer input(OIIO::ImageInput::create(format.reader).release());
+  OIIO::geterror();  // clears it: the library prints what nobody asked for
+  if (!input)
+    reader.refuse(fmt::format("is {}, which this machine's OpenImageIO cannot read, expected another format",
+                              format.name));
+  bool is_open = false;
+  try {
+    is_open = input->open(reader.path().string(), spec, hints);
+  } catch (const std::exception&) {  // some readers believe lengths in a damaged file
+  }
+  if (!is_open)
+    reader.refuse(
+        fmt::format("is not an image that can be read (its header is damaged, cut short, or of a kind that "
+                    "is not read), expected a whole {}",
+                    format.name));
   return input;
 }
 
 // Counts with a reader of its own: seeking an image that is not there leaves some readers with an error.
-int count_images(const ChannelReader& reader) {
-  const auto input = open_image(reader);
+int count_images(const ChannelReader& reader, const ImageFormat& format) {
+  const InputPointer input = open_image(reader, format);
   int count = 1;
   while (count < kMaxParts && input->seek_subimage(count, 0)) ++count;
-  input->geterror();  // clears the error of seeking
   return count;
 }
 
-std::string format_name_of(const std::string& name) {
-  static const std::map<std::string, std::string> names{
-      {"openexr", "OpenEXR"}, {"webp", "WebP"},           {"hdr", "Radiance HDR"}, {"jpeg2000", "JPEG 2000"},
-      {"targa", "TGA"},       {"softimage", "Softimage"}, {"cineon", "Cineon"}};
-  if (const auto found = names.find(name); found != names.end()) return found->second;
-  std::string upper = name;
-  std::ranges::transform(upper, upper.begin(), [](unsigned char c) { return std::toupper(c); });
-  return upper;
+// Refuses files far too short for what they claim, and images whose reader would take too much memory.
+void check_claim(const ChannelReader& reader, const OIIO::ImageSpec& spec, const ImageFormat& format) {
+  const auto sample_bytes = static_cast<double>(spec.format.size());
+  const double samples = static_cast<double>(spec.width) * spec.height * spec.nchannels;
+  std::error_code ignored;
+  const auto size = static_cast<double>(fs::file_size(reader.path(), ignored));
+  if (format.most_expansion > 0 && samples * sample_bytes > format.most_expansion * size)
+    reader.refuse(fmt::format("is cut short: {:.0f} bytes cannot hold {} x {} texels, expected a whole {}",
+                              size, spec.width, spec.height, format.name));
+  double held = samples * format.held_per_sample;
+  if (format.reader == std::string_view("tiff")) {
+    const int rows =
+        spec.tile_width > 0 ? spec.tile_height : spec.get_int_attribute("tiff:RowsPerStrip", spec.height);
+    held = static_cast<double>(std::min(rows, spec.height)) * spec.width * spec.nchannels * sample_bytes;
+  }
+  check_memory(reader, held, spec.width, spec.height);
 }
 
 // Returns the bits of an integer as stored: 12 for what is widened to 16. Palettes index whole colours.
@@ -138,20 +193,27 @@ double pixel_aspect_of(const OIIO::ImageSpec& spec, const std::string& format) {
 
 }  // namespace
 
+void InputCloser::operator()(OIIO::ImageInput* input) const {
+  input->geterror();
+  OIIO::ImageInput::unique_ptr owner(input);
+}
+
 ImageReader::ImageReader(const fs::path& path, const ImageChoice& choice) : ChannelReader(path) {
   check_regular_file(*this);
-  if (const std::string fault = png_error(path); !fault.empty()) refuse(fault);
+  format_ = with_file_context(path, [&] { return &image_format_of(path); });
+  check_before_opening(*this, *format_);
   OIIO::attribute("threads", thread_count());
   OIIO::attribute("exr_threads", thread_count());
-  input_ = open_image(*this);
-  const std::string format = input_->format_name();
+  input_ = open_image(*this, *format_);
+  const std::string format = format_->reader;
   const std::vector<TiffPage> pages = format == "tiff" ? tiff_pages(path) : std::vector<TiffPage>();
   check_usable(*this, input_->spec());
   subimage_ = find_part(choice, pages);
   if (subimage_ != 0 && !input_->seek_subimage(subimage_, 0))
-    refuse(fmt::format("has an image {} that cannot be read ({})", subimage_, one_line(input_->geterror())));
+    refuse(fmt::format("has an image {} that cannot be read, expected a whole {}", subimage_, format_->name));
   spec_ = input_->spec();
   check_usable(*this, spec_);
+  check_claim(*this, spec_, *format_);
   if (format == "openexr") check_windows(*this, spec_, choice);
   if (format == "tiff") check_tiff(*this, spec_);
   note_facts(pages);
@@ -180,7 +242,7 @@ int ImageReader::find_part(const ImageChoice& choice, const std::vector<TiffPage
   for (size_t i = 0; i < pages.size(); ++i)
     if (!pages[i].is_reduced && !pages[i].is_mask) whole.push_back(static_cast<int>(i));
   if (whole.empty()) {
-    whole.resize(static_cast<size_t>(count_images(*this)));
+    whole.resize(static_cast<size_t>(count_images(*this, *format_)));
     std::iota(whole.begin(), whole.end(), 0);
   }
   if (!choice.part && whole.size() > 1)
@@ -194,12 +256,12 @@ int ImageReader::find_part(const ImageChoice& choice, const std::vector<TiffPage
 }
 
 void ImageReader::note_facts(const std::vector<TiffPage>& pages) {
-  const std::string format = input_->format_name();
+  const std::string format = format_->reader;
   facts_.width = spec_.width;
   facts_.height = spec_.height;
   facts_.channels = spec_.channelnames;
   if (spec_.alpha_channel >= 0) facts_.alpha = spec_.alpha_channel;
-  facts_.format = format_name_of(format);
+  facts_.format = format_->name;
   note_samples(spec_, format, facts_);
   const int orientation =
       format == "webp" ? webp_orientation(path()) : spec_.get_int_attribute("Orientation", 1);
@@ -210,13 +272,15 @@ void ImageReader::note_facts(const std::vector<TiffPage>& pages) {
     facts_.no_data = pages[static_cast<size_t>(subimage_)].no_data;
 }
 
-bool ImageReader::read_rows(const Window& window, OIIO::TypeDesc type, void* values) {
+bool ImageReader::read_rows(const Window& window, OIIO::TypeDesc type, void* values) try {
   const int top = spec_.y + window.row_begin, bottom = spec_.y + window.row_end;
   if (spec_.tile_width > 0)
     return input_->read_tiles(subimage_, 0, spec_.x, spec_.x + spec_.width, top, bottom, spec_.z, spec_.z + 1,
                               window.channel_begin, window.channel_end, type, values);
   return input_->read_scanlines(subimage_, 0, top, bottom, spec_.z, window.channel_begin, window.channel_end,
                                 type, values);
+} catch (const std::exception&) {  // some readers believe lengths in a damaged file
+  return false;
 }
 
 void ImageReader::read(int begin, int end, const BlockVisitor& visit) {
@@ -228,6 +292,8 @@ void ImageReader::read(int begin, int end, const BlockVisitor& visit) {
   const size_t row_values = static_cast<size_t>(spec_.width) * static_cast<size_t>(channels);
   // 8 bits widen to 16 exactly (v · 257), so that one division gives the nearest float for both.
   const bool integers = spec_.format == OIIO::TypeDesc::UINT8 || spec_.format == OIIO::TypeDesc::UINT16;
+  const double block_values = static_cast<double>(rows) * static_cast<double>(row_values);
+  check_memory(*this, block_values * (sizeof(float) + sizeof(uint16_t)), spec_.width, spec_.height);
   std::vector<float> block(static_cast<size_t>(rows) * row_values);
   std::vector<uint16_t> stored(integers ? block.size() : 0);
   for (int row = 0; row < spec_.height; row += rows) {
@@ -236,8 +302,7 @@ void ImageReader::read(int begin, int end, const BlockVisitor& visit) {
     const bool is_read = integers ? read_rows(window, OIIO::TypeDesc::UINT16, stored.data())
                                   : read_rows(window, OIIO::TypeDesc::FLOAT, block.data());
     if (!is_read || input_->has_error())
-      refuse(fmt::format("cannot be read from row {} on, it may be cut short ({})", row,
-                         one_line(input_->geterror())));
+      refuse(fmt::format("is damaged or cut short near row {}, expected a whole {}", row, format_->name));
     const size_t count = static_cast<size_t>(window.row_end - row) * row_values;
     for (size_t i = 0; i < (integers ? count : 0); ++i) block[i] = static_cast<float>(stored[i] / 65535.0);
     visit(static_cast<size_t>(row) * static_cast<size_t>(spec_.width), std::span(block).first(count));

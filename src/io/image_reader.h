@@ -1,4 +1,5 @@
-// Reads channels of any format that OpenImageIO knows, with every check that the header allows.
+// Reads channels of the formats of io/image_format.h through OpenImageIO, with every check that the header
+// allows.
 #pragma once
 
 #include <OpenImageIO/imageio.h>
@@ -6,6 +7,7 @@
 #include <memory>
 
 #include "io/channel_reader.h"
+#include "io/image_format.h"
 #include "io/image_io.h"
 #include "io/tiff_pages.h"
 
@@ -17,6 +19,12 @@ struct ImageChoice {
   ImageWindow window = ImageWindow::kDisplay;
   bool is_offered = false;  // the user can choose: errors name the options
 };
+
+// Closes an image without what OpenImageIO prints of errors that nobody took.
+struct InputCloser {
+  void operator()(OIIO::ImageInput* input) const;
+};
+using InputPointer = std::unique_ptr<OIIO::ImageInput, InputCloser>;
 
 class ImageReader : public ChannelReader {
  public:
@@ -42,7 +50,8 @@ class ImageReader : public ChannelReader {
   void note_facts(const std::vector<TiffPage>& pages);
   bool read_rows(const Window& window, OIIO::TypeDesc type, void* values);
 
-  std::unique_ptr<OIIO::ImageInput> input_;
+  const ImageFormat* format_ = nullptr;
+  InputPointer input_;
   OIIO::ImageSpec spec_;
   int subimage_ = 0;
 };

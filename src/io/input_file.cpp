@@ -10,6 +10,8 @@
 
 #include "core/context.h"
 #include "core/error.h"
+#include "core/memory_limit.h"
+#include "io/file_context.h"
 
 namespace hemibake {
 
@@ -28,6 +30,7 @@ std::string read_whole_file(const fs::path& path, uint64_t most_bytes) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file) throw InputError(fmt::format("{}: could not read: {}", path.string(), std::strerror(errno)));
   const uint64_t size = fs::file_size(path, error);
+  with_file_context(path, [&] { require_memory(static_cast<double>(size), fmt::format("{} bytes", size)); });
   std::string bytes;
   if (!error && size <= most_bytes) bytes.reserve(size + 1);
   for (size_t count = 1; count > 0;) {

@@ -58,6 +58,8 @@ std::vector<uint64_t> parse_shape(std::string_view text) {
   while (at < last) {
     uint64_t value = 0;
     const auto [next, error] = std::from_chars(at, last, value);
+    const bool is_between = *at == ',' || *at == ' ' || *at == 'L';  // 16L: Python 2
+    if (error != std::errc{} && !is_between) return {};
     if (error == std::errc{}) shape.push_back(value);
     at = error == std::errc{} ? next : at + 1;
   }
@@ -112,6 +114,7 @@ HeightFile read_npy_file(const std::filesystem::path& path, std::optional<double
   if (values.size() != expected)
     refuse(path, fmt::format("has {} bytes of numbers, expected {} of {} x {} {}", values.size(), expected,
                              layout.width, layout.height, sample_type_name(layout.type)));
+  require_read_memory(path, layout);
   HeightFile file;
   file.format = "NumPy";
   read_samples(path, values, layout, no_data, file);

@@ -46,7 +46,7 @@ PnmReader::PnmReader(const std::filesystem::path& path)
   is_text_ = kind == '2' || kind == '3';
   if (!is_text_) ++at_;  // one white space ends the header
   const uint64_t sample_bytes = max_value_ > 255 ? 2 : 1;
-  if (!is_text_ && at_ + texels * (is_color ? 3 : 1) * sample_bytes > bytes_.size())
+  if (at_ + texels * (is_color ? 3 : 1) * (is_text_ ? 1 : sample_bytes) > bytes_.size())
     refuse(fmt::format("is cut short, expected {} x {} texels", facts_.width, facts_.height));
   facts_.channels = is_color ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
   facts_.format = is_color ? "PPM" : "PGM";

@@ -94,6 +94,7 @@ HeightFile read_raw_file(const std::filesystem::path& path, const std::string& l
   if (!error && size != expected)
     throw InputError(fmt::format("{}: has {} bytes, expected {} of --raw {}; {}", path.string(), size,
                                  expected, layout_text, raw_suggestion(path)));
+  require_read_memory(path, layout);
   HeightFile file;
   file.format = "raw";
   read_samples(path, read_whole_file(path), layout, no_data, file);

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/memory_limit.h"
+#include "io/file_context.h"
 #include "io/height_sink.h"
 
 namespace hemibake {
@@ -57,6 +59,14 @@ double decode_sample(const char* bytes, const SampleType& type) {
   if (type.kind == 'u') return static_cast<double>(bits);
   const int unused = 64 - type.bytes * 8;
   return static_cast<double>(static_cast<int64_t>(bits << unused) >> unused);
+}
+
+void require_read_memory(const std::filesystem::path& path, const SampleLayout& layout) {
+  const double texels = static_cast<double>(layout.width) * layout.height;
+  with_file_context(path, [&] {
+    require_memory(texels * (layout.type.bytes + kHeightBytesPerTexel),
+                   fmt::format("{} x {} texels", layout.width, layout.height));
+  });
 }
 
 void read_samples(const std::filesystem::path& path, std::string_view bytes, const SampleLayout& layout,

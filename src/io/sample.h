@@ -31,6 +31,9 @@ struct SampleLayout {
   bool is_column_major = false;
 };
 
+// Throws InputError naming the file where it and its heights do not fit the memory that there is for them.
+void require_read_memory(const std::filesystem::path& path, const SampleLayout& layout);
+
 // Reads one number per texel: unsigned integers over the largest of their type, all others as stored. Throws
 // InputError naming the texel where one is infinite.
 // bytes: those of all texels. file: gets values, holes, sample type, full scale and its one channel.

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "core/memory_limit.h"
 #include "io/foreign_images.h"
 
 namespace hemibake {
@@ -106,6 +107,26 @@ TEST_F(ImageRefusals, RefusesADamagedPng) {
   bytes[bytes.find("IDAT") + 20] ^= 0x55;
   write_bytes(folder_ / "damaged.png", bytes);
   EXPECT_THAT(refusal("damaged.png"), HasSubstr("damaged.png: is damaged (a CRC does not fit)"));
+}
+
+TEST_F(ImageRefusals, OpensOnlyWhatItsContentSays) {
+  using namespace std::string_literals;
+  const std::string rest(100, 'x');
+  for (const auto& [begin, name] : {std::pair{"GIF89a"s, "a GIF"}, std::pair{"SDPX"s, "a DPX"},
+                                    std::pair{"\x01\xDA"s, "an SGI"}, std::pair{"FOR4"s, "a Maya IFF"}}) {
+    write_bytes(folder_ / "x.png", begin + rest);
+    EXPECT_THAT(refusal("x.png"),
+                AllOf(HasSubstr(name), HasSubstr("which is not read"), HasSubstr("convert")));
+  }
+  write_foreign(folder_ / "a.png", spec_of(3, 2, {"Y"}), std::vector<uint8_t>(6, 7));
+  std::filesystem::rename(folder_ / "a.png", folder_ / "a.exr");
+  EXPECT_NO_THROW(read_height_map(folder_ / "a.exr"));
+}
+
+TEST_F(ImageRefusals, CountsMemoryBeforeTexels) {
+  const MemoryScope half_gib(0.5);
+  write_foreign(folder_ / "a.png", spec_of(12000, 12000, {"Y"}), std::vector<uint8_t>(144000000));
+  EXPECT_THAT(refusal("a.png"), HasSubstr("a.png: has 12000 x 12000 texels, which need"));
 }
 
 // ---- Claims in the header
