@@ -320,8 +320,10 @@ void write_links(const fs::path& path, const FormFactorMatrix& final_gather, con
   OutputFile output(path);
   const Hdf5Silence silence;
   try {
-    Hdf5Handle file(H5Fcreate(output.temporary_path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
-                    H5Fclose);
+    // The file is locked by `output` already.
+    Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    checked(H5Pset_file_locking(access.id(), false, true));
+    Hdf5Handle file(H5Fcreate(output.temporary_path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
     write_provenance(file.id(), provenance);
     write_matrix(file.id(), "gather", final_gather);
     if (patches) {
