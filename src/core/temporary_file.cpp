@@ -50,12 +50,12 @@ std::string make_name() {
 bool has_name(int descriptor, const fs::path& path) {
   struct stat opened {
   }, named{};
-  return fstat(descriptor, &opened) == 0 && lstat(path.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
-         opened.st_ino == named.st_ino;
+  return fstat(descriptor, &opened) == 0 && lstat(path.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
-// Locks a new file. Where the file system has no locks, none can be removed as stale either. Returns false where
-// another process took it for stale.
+// Locks a new file. Where the file system has no locks, none can be removed as stale either. Returns false
+// where another process took it for stale.
 bool hold(int descriptor, const fs::path& path) {
   if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;
   return has_name(descriptor, path);

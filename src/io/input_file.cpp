@@ -12,7 +12,8 @@
 namespace hemibake {
 
 std::string read_whole_file(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path))
+  std::error_code not_there;
+  if (std::filesystem::is_directory(path, not_there))
     throw InputError(fmt::format("{}: is a folder, expected a file", path.string()));
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;

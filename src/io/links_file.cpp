@@ -306,7 +306,7 @@ LinksFile read_links_from(hid_t file) {
 
 }  // namespace
 
-void write_links(const fs::path& path, const FormFactorMatrix& final_gather, const FormFactorMatrix* patches,
+void write_links(OutputFile& output, const FormFactorMatrix& final_gather, const FormFactorMatrix* patches,
                  std::span<const float> direct, const Provenance& provenance) {
   check_provenance(provenance);
   const FormFactorMatrix& between_patches = patches ? *patches : final_gather;
@@ -317,13 +317,14 @@ void write_links(const fs::path& path, const FormFactorMatrix& final_gather, con
   expect_equal(direct.size(), size_t{final_gather.columns}, "values of direct");
   for (const float value : direct)
     if (!std::isfinite(value)) fail_expectation("E0 of a patch", static_cast<double>(value), 0);
-  OutputFile output(path);
+  const fs::path& path = output.path();
   const Hdf5Silence silence;
   try {
     // The file is locked by `output` already.
     Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     checked(H5Pset_file_locking(access.id(), false, true));
-    Hdf5Handle file(H5Fcreate(output.temporary_path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
+    Hdf5Handle file(H5Fcreate(output.temporary_path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()),
+                    H5Fclose);
     write_provenance(file.id(), provenance);
     write_matrix(file.id(), "gather", final_gather);
     if (patches) {
@@ -339,7 +340,13 @@ void write_links(const fs::path& path, const FormFactorMatrix& final_gather, con
     if (error.error_number != 0) fail_write(path, error.error_number);
     throw InputError(fmt::format("{}: could not write: {}", path.string(), error.what()));
   }
-  output.commit();
+}
+
+void write_links(const fs::path& path, const FormFactorMatrix& final_gather, const FormFactorMatrix* patches,
+                 std::span<const float> direct, const Provenance& provenance) {
+  OutputFile file(path);
+  write_links(file, final_gather, patches, direct, provenance);
+  file.commit();
 }
 
 LinksFile read_links(const fs::path& path) {

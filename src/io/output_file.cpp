@@ -21,18 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr int kMostLinks = 40;  // as the kernel follows
 
-// Returns the file that gets replaced: the path itself, or what a symbolic link leads to, there or not.
-fs::path resolve_target(const fs::path& path) {
-  fs::path target = path;
-  for (int i = 0; i < kMostLinks; ++i) {
-    std::error_code error;
-    const fs::path link = fs::read_symlink(target, error);
-    if (error) return target;
-    target = target.parent_path() / link;
-  }
-  fail_write(path, ELOOP);
-}
-
 // Refuses a target that plain writing would refuse: a rename over a device or a read-only file succeeds, and
 // destroys it.
 void check_replaceable(const fs::path& path, const fs::path& target) {
@@ -57,6 +45,17 @@ void keep_mode(int descriptor, const struct stat& replaced) {
 
 void fail_write(const fs::path& path, int error_number) {
   throw InputError(fmt::format("{}: could not write: {}", path.string(), std::strerror(error_number)));
+}
+
+fs::path resolve_target(const fs::path& path) {
+  fs::path target = path;
+  for (int i = 0; i < kMostLinks; ++i) {
+    std::error_code error;
+    const fs::path link = fs::read_symlink(target, error);
+    if (error) return target;
+    target = target.parent_path() / link;
+  }
+  fail_write(path, ELOOP);
 }
 
 std::string lower_case_extension(const fs::path& path) {
@@ -108,6 +107,12 @@ void OutputFile::commit() {
 
 OutputFile& OutputSet::add(const fs::path& path) {
   return *files_.emplace_back(std::make_unique<OutputFile>(path));
+}
+
+std::vector<fs::path> OutputSet::paths() const {
+  std::vector<fs::path> paths;
+  for (const auto& file : files_) paths.push_back(file->path());
+  return paths;
 }
 
 void OutputSet::commit() {

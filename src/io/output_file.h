@@ -1,6 +1,6 @@
 // Files that appear under their name only when whole: written under a temporary name in the same folder,
-// renamed by commit(). Errors and Ctrl-C leave nothing behind; what a killed process left, the next that writes
-// into the folder removes.
+// renamed by commit(). Errors and Ctrl-C leave nothing behind; what a killed process left, the next that
+// writes into the folder removes.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +14,8 @@ namespace hemibake {
 class OutputFile {
  public:
   // Creates the temporary file, empty. Follows a symbolic link: replaces its target, or makes it. Keeps the
-  // permissions of a file that it replaces; other hard links to that keep the old file. Throws InputError where the folder is missing or unwritable, or the path is there and is not a writable regular
-  // file.
+  // permissions of a file that it replaces; other hard links to that keep the old file. Throws InputError
+  // where the folder is missing or unwritable, or the path is there and is not a writable regular file.
   explicit OutputFile(const std::filesystem::path& path);
   // Removes the temporary file unless it was committed.
   ~OutputFile();
@@ -49,6 +49,7 @@ class OutputSet {
  public:
   // Creates a file of the set, as OutputFile does. Files get their names in the order they were added.
   OutputFile& add(const std::filesystem::path& path);
+  std::vector<std::filesystem::path> paths() const;
   // Finishes all files and renames them. To be called once; throws InputError.
   void commit();
 
@@ -67,6 +68,10 @@ void check_output_path(const std::filesystem::path& path,
 
 // Throws InputError "FILE: could not write: REASON" for an errno value.
 [[noreturn]] void fail_write(const std::filesystem::path& path, int error_number);
+
+// Returns the file that writing to a path replaces or makes: the path itself, or what symbolic links lead to.
+// Throws InputError where they lead in a circle.
+std::filesystem::path resolve_target(const std::filesystem::path& path);
 
 // Returns the extension in lower case, with its dot: ".exr".
 std::string lower_case_extension(const std::filesystem::path& path);
