@@ -25,6 +25,22 @@ nlohmann::ordered_json recorded_files(const fs::path& record) {
   return nullptr;
 }
 
+// Returns whether a JSON file says that it was made of one of the files: its provenance has that one's hash.
+bool is_made_of(const fs::path& path, const nlohmann::ordered_json& files) {
+  try {
+    const nlohmann::ordered_json json = read_json(path);
+    const std::string inputs = json.at("provenance").at("input_sha256").get<std::string>();
+    return std::ranges::any_of(files, [&](const nlohmann::ordered_json& hash) {
+      return hash.is_string() && !hash.get<std::string>().empty() &&
+             inputs.find(hash.get<std::string>()) != std::string::npos;
+    });
+  } catch (const InputError&) {
+    return false;
+  } catch (const nlohmann::ordered_json::exception&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 nlohmann::ordered_json hashes_of(const std::vector<OutputFile*>& files) {
@@ -55,7 +71,8 @@ FileSetState file_set_state(const fs::path& record) {
 
 void check_file_set(const fs::path& record, std::initializer_list<const char*> later) {
   for (const std::string& name : file_set_state(record).changed)
-    if (std::ranges::find(later, name) == later.end())
+    if (std::ranges::find(later, name) == later.end() ||
+        !is_made_of(record.parent_path() / name, recorded_files(record)))
       throw InputError(fmt::format(
           "{}: is not of the run that wrote {}, expected the files of one run; run it again, or remove {}",
           (record.parent_path() / name).string(), record.filename().string(), record.filename().string()));

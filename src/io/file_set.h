@@ -27,8 +27,8 @@ struct FileSetState {
 // gives none: its reader says what is wrong with it.
 FileSetState file_set_state(const std::filesystem::path& record);
 
-// Throws InputError where a file beside a record is of another run. later: names of files that later commands
-// write over, which are taken as they are.
+// Throws InputError where a file beside a record is of another run. later: names of JSON files that may
+// be newer, where their provenance says that they were made of a file of the run.
 void check_file_set(const std::filesystem::path& record, std::initializer_list<const char*> later = {});
 
 }  // namespace hemibake

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io/io_testing.h"
+#include "io/provenance.h"
 #include "io/table_io.h"
 
 namespace hemibake {
@@ -36,6 +37,9 @@ TEST(FileSet, TellsFilesOfTwoRuns) {
   EXPECT_THAT(file_set_state(folder / "set.json").changed, ElementsAre("b"));
   EXPECT_THAT(error_of<InputError>([&] { check_file_set(folder / "set.json"); }),
               HasSubstr("/b: is not of the run that wrote set.json, expected the files of one run"));
+  EXPECT_THAT(error_of<InputError>([&] { check_file_set(folder / "set.json", {"b"}); }),
+              HasSubstr("/b: is not"));
+  write_json(folder / "b", {{"provenance", {{"input_sha256", sha256_of_file(folder / "a")}}}});
   check_file_set(folder / "set.json", {"b"});
   fs::remove(folder / "b");
   EXPECT_THAT(file_set_state(folder / "set.json").missing, ElementsAre("b"));
