@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cstdlib>
 #include <exception>
 
 #include "bake/settings.h"
@@ -13,6 +14,7 @@
 #include "cli/print/streams.h"
 #include "cli/signals.h"
 #include "io/provenance.h"
+#include "tracers/slice/instruction_sets.h"
 
 namespace hemibake {
 
@@ -67,11 +69,15 @@ int run(const ParsedCommand& parsed, const Context& context) {
 
 }  // namespace
 
+std::span<const Command> commands() { return kCommands; }
+
 int run_command_line(int argc, char** argv) {
   open_standard_streams();
   end_on_uncaught_exceptions();
   const std::atomic<bool>& cancel = install_signal_handlers();
   try {
+    // For tests: the bytes of a bake are the same on each.
+    if (const char* name = std::getenv("HEMIBAKE_TARGETS")) use_instruction_set(name);
     const auto parsed = parse_command_line(argc, argv, kCommands);
     return parsed ? run(*parsed, context_of(*parsed, cancel, argc, argv)) : 0;
   } catch (...) {

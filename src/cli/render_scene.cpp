@@ -21,7 +21,7 @@
 namespace hemibake {
 namespace {
 
-constexpr int kBins = 100;
+constexpr int kModelBins = 100;
 
 // The settings that a bake was made with.
 struct Recorded {
@@ -105,7 +105,7 @@ std::optional<ShadingModel> find_model(const RenderOptions& options, const Bake&
   } else {
     path = options.bake;
     try {
-      fits.fits = fit_model(options.model, make_curves(bake, kBins), Abscissa::kCenter, Weights::kNone);
+      fits.fits = fit_model(options.model, make_curves(bake, kModelBins), Abscissa::kCenter, Weights::kNone);
     } catch (const std::runtime_error& error) {
       throw_if_cancelled();
       if (optional) return without();

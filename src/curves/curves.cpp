@@ -7,6 +7,7 @@
 
 #include "core/constants.h"
 #include "core/error.h"
+#include "core/portable_math.h"
 #include "core/statistics.h"
 #include "transport/series.h"
 
@@ -100,9 +101,8 @@ double total_over_pi(const CurveBin& bin, double albedo) {
   const double last = mean(count - 1);
   const double tail = series_tail(mean(count - 2), last, 1, kPi - sum_bounces(count, mean, 1));
   const double ratio = tail / (tail + last);
-  if (tail > 0)
-    total +=
-        series_tail(std::pow(albedo, count - 2) * last / ratio, std::pow(albedo, count - 1) * last, albedo);
+  const double before = PortableMath<double>::pow(albedo, static_cast<double>(count - 2));
+  if (tail > 0) total += series_tail(before * last / ratio, before * albedo * last, albedo);
   return total / kPi;
 }
 

@@ -23,8 +23,10 @@ void write_bake(OutputFile& file, const Bake& bake, const Provenance& provenance
 void write_bake(const std::filesystem::path& path, const Bake& bake, const Provenance& provenance);
 
 // Reads bit for bit the planes written; ignores channels of other names. Throws InputError naming the file
-// where it is not a whole, readable bake, or a value in it is not finite: NaN in every plane is a hole where
-// the provenance says that holes are open.
+// where it is not a whole, readable bake, or a value in it is not finite or out of its range, but for
+// rounding: ao, visibility, bounce 0..1, irradiance and total 0..π, residual −1..1, vectors of length 1 (bent
+// also 0). Bakes that record published weights, stored normal lengths or a cone may hold more light. NaN in
+// every plane is a hole where the provenance says that holes are open.
 BakeFile read_bake(const std::filesystem::path& path);
 
 }  // namespace hemibake

@@ -61,6 +61,9 @@ struct Receivers {
   Rays rays_of;     // rays_of(receiver): number of rays
   Start start;      // start(receiver, u): point and normal where a ray begins, u in the unit square
 };
+// Clang 14 does not deduce the arguments of an aggregate by itself.
+template <class Rays, class Start>
+Receivers(uint64_t, Rays, Start) -> Receivers<Rays, Start>;
 
 // Returns ∫ (L − mean) V max(0, n·ω) dω + mean · E₀ of every receiver.
 template <class Rays, class Start>

@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t kWidth = 80;
 constexpr size_t kIndent = 14;
-constexpr size_t kNameWidth = 15;
+constexpr size_t kFitNameWidth = 15;
 constexpr size_t kConstantWidth = 9;
 constexpr size_t kFitsInRow = 3;
 
@@ -34,7 +34,7 @@ std::string cell(const FitParameter& parameter) {
 // fits: of one map, in the order of `shared`; a fit that is missing leaves its cells empty.
 std::string constants_row(const std::string& name, std::span<const NamedFit> shared,
                           const std::vector<const Fit*>& fits) {
-  std::string text = fit_name(name, kNameWidth);
+  std::string text = fit_name(name, kFitNameWidth);
   for (size_t i = 0; i < shared.size(); ++i)
     for (size_t p = 0; p < shared[i].fit.parameters.size(); ++p)
       text += fits[i] ? cell(fits[i]->parameters[p]) : fmt::format("{:>{}}", "-", kConstantWidth);
@@ -50,7 +50,7 @@ const Fit* find_fit(const MapErrors& map, const std::string& name) {
 }
 
 std::string constants_table(const MapComparison& comparison, std::span<const NamedFit> fits) {
-  std::string head(kNameWidth, ' '), names(kNameWidth, ' ');
+  std::string head(kFitNameWidth, ' '), names(kFitNameWidth, ' ');
   for (const auto& [name, fit] : fits) {
     head += fmt::format("{:>{}}", name, kConstantWidth * fit.parameters.size());
     for (const FitParameter& parameter : fit.parameters)
@@ -72,16 +72,16 @@ std::string rms(const std::optional<Score>& score) {
 }
 
 std::string errors_table(const MapComparison& comparison) {
-  std::string text = fmt::format("{:{}}{:7}", "", kNameWidth, "");
+  std::string text = fmt::format("{:{}}{:7}", "", kFitNameWidth, "");
   for (const std::string& model : comparison.models) text += fmt::format(" {:>14}", model);
-  text += fmt::format("\n{:{}}{:>7}", "map", kNameWidth, "m");
+  text += fmt::format("\n{:{}}{:>7}", "map", kFitNameWidth, "m");
   for (size_t m = 0; m < comparison.models.size(); ++m) text += fmt::format(" {:>7}{:>7}", "own", "held");
   for (const MapErrors& map : comparison.maps) {
-    text += "\n" + fit_name(map.name, kNameWidth) +
+    text += "\n" + fit_name(map.name, kFitNameWidth) +
             (map.mean_escape ? fmt::format("{:7.3f}", *map.mean_escape) : fmt::format("{:>7}", "-"));
     for (const ModelOnMap& model : map.models) text += " " + rms(model.own) + rms(model.held_out);
   }
-  text += fmt::format("\n{:{}}{:7}", "mean", kNameWidth, "");
+  text += fmt::format("\n{:{}}{:7}", "mean", kFitNameWidth, "");
   for (const std::optional<double>& held_out : comparison.held_out_rms)
     text += fmt::format(" {:7}{}", "", rms(held_out ? std::optional(Score{*held_out, 0}) : std::nullopt));
   return text + "\n";

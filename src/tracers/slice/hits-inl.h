@@ -7,9 +7,9 @@
 #define HEMIBAKE_SLICE_HITS_INL_H
 #endif
 
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include "tracers/slice/fused-inl.h"
 #include "tracers/slice/traversal.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -17,10 +17,6 @@ namespace hemibake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using F = hn::CappedTag<float, kSliceLanes>;
-using V = hn::Vec<F>;
-constexpr F kF;
-constexpr size_t kWidth = hn::MaxLanes(F());
 constexpr size_t kParts = kSliceLanes / kWidth;
 
 // One number per lane of a packet.
@@ -50,7 +46,7 @@ HWY_INLINE Vectors along(const LaneArray<float>& a, const LaneArray<float>& b, d
   const Vectors va = load(a), vb = load(b);
   Vectors v;
   for (size_t p = 0; p < kParts; ++p)
-    v.part[p] = hn::MulAdd(va.part[p], broadcast(x), hn::Mul(vb.part[p], broadcast(y)));
+    v.part[p] = mul_add(va.part[p], broadcast(x), hn::Mul(vb.part[p], broadcast(y)));
   return v;
 }
 
@@ -70,13 +66,13 @@ struct SkyDirection {
 
 HWY_INLINE SkyDirection direction_above(V m) {
   const V half = hn::Set(kF, 0.5f), quarter_turn = hn::Set(kF, 0.785398163f);
-  const V cos2 = hn::Div(hn::Set(kF, 1.0f), hn::MulAdd(m, m, hn::Set(kF, 1.0f)));
-  return {hn::NegMulAdd(half, hn::MulAdd(m, cos2, hn::Atan(kF, m)), quarter_turn), hn::Mul(half, cos2)};
+  const V cos2 = hn::Div(hn::Set(kF, 1.0f), mul_add(m, m, hn::Set(kF, 1.0f)));
+  return {neg_mul_add(half, mul_add(m, cos2, hn::Atan(kF, m)), quarter_turn), hn::Mul(half, cos2)};
 }
 
 // Returns ∫ of cosθ from slope m to the zenith: 1 − sinθ, without cancellation near the zenith.
 HWY_INLINE V uniform_above(V m) {
-  const V one = hn::Set(kF, 1.0f), cos2 = hn::Div(one, hn::MulAdd(m, m, one));
+  const V one = hn::Set(kF, 1.0f), cos2 = hn::Div(one, mul_add(m, m, one));
   const V sine = hn::Mul(hn::Abs(m), hn::Sqrt(cos2));
   return hn::IfThenElse(hn::Lt(m, hn::Zero(kF)), hn::Add(one, sine), hn::Div(cos2, hn::Add(one, sine)));
 }
@@ -85,7 +81,7 @@ HWY_INLINE V uniform_above(V m) {
 // tangent_slope: of the plane normal to that normal, in this slice.
 HWY_INLINE V cosine_above(V m, V tangent_slope) {
   const SkyDirection sky = direction_above(m);
-  return hn::NegMulAdd(tangent_slope, sky.horizontal, sky.vertical);
+  return neg_mul_add(tangent_slope, sky.horizontal, sky.vertical);
 }
 
 HWY_INLINE void add_lanes(V v, double* sum) {
@@ -127,29 +123,28 @@ struct Slice {
   HWY_INLINE explicit Slice(V tangent_slope) {
     const V one = hn::Set(kF, 1.0f);
     angle = hn::Atan(kF, tangent_slope);
-    cosine = hn::Div(one, hn::Sqrt(hn::MulAdd(tangent_slope, tangent_slope, one)));
+    cosine = hn::Div(one, hn::Sqrt(mul_add(tangent_slope, tangent_slope, one)));
     sine = hn::Mul(tangent_slope, cosine);
   }
 
   // Takes a step of Halley's method from δ towards the angle with `weight` below it, no further than `most`.
   HWY_INLINE V nearer(V delta, V weight, V most) const {
     const V s = hn::Sin(kF, delta), c = hn::Cos(kF, delta);
-    const V sine_up = hn::MulAdd(s, cosine, hn::Mul(c, sine)),
-            cosine_up = hn::MulSub(c, cosine, hn::Mul(s, sine));
-    const V twice_below = hn::MulSub(s, sine_up, hn::Mul(delta, sine));
-    const V error = hn::NegMulAdd(hn::Add(weight, weight), cosine, twice_below);
+    const V sine_up = mul_add(s, cosine, hn::Mul(c, sine)), cosine_up = mul_sub(c, cosine, hn::Mul(s, sine));
+    const V twice_below = mul_sub(s, sine_up, hn::Mul(delta, sine));
+    const V error = neg_mul_add(hn::Add(weight, weight), cosine, twice_below);
     const V growth = hn::Mul(s, cosine_up), two = hn::Set(kF, 2.0f);
-    const V bend = hn::MulSub(c, cosine_up, hn::Mul(s, sine_up));
+    const V bend = mul_sub(c, cosine_up, hn::Mul(s, sine_up));
     // f, f' and f'' of the equation, times 2 cos θ, cos θ and cos θ; the step is 2 f f' / (2 f'² − f f'').
-    const V divisor = hn::MulSub(hn::Mul(two, growth), hn::Mul(two, growth), hn::Mul(error, bend));
+    const V divisor = mul_sub(hn::Mul(two, growth), hn::Mul(two, growth), hn::Mul(error, bend));
     const V step = hn::Div(hn::Mul(hn::Mul(two, error), growth), hn::Max(divisor, hn::Set(kF, 1e-20f)));
     return hn::Min(most, hn::Max(hn::Zero(kF), hn::Sub(delta, step)));
   }
 
   HWY_INLINE V slope_at(V delta) const {
     const V s = hn::Sin(kF, delta), c = hn::Cos(kF, delta);
-    return hn::Div(hn::MulAdd(s, cosine, hn::Mul(c, sine)),
-                   hn::Max(hn::MulSub(c, cosine, hn::Mul(s, sine)), hn::Set(kF, 1e-20f)));
+    return hn::Div(mul_add(s, cosine, hn::Mul(c, sine)),
+                   hn::Max(mul_sub(c, cosine, hn::Mul(s, sine)), hn::Set(kF, 1e-20f)));
   }
 };
 
@@ -161,7 +156,7 @@ HWY_INLINE void place_hits(size_t part, V tangent_slope, V horizon, V per_weight
   const V most_delta = hn::Max(zero, hn::Sub(hn::Atan(kF, horizon), slice.angle));
   const V whole = hn::Max(cosine_above(tangent_slope, tangent_slope), hn::Set(kF, 1e-30f));
   const V blocked = hn::Sub(whole, cosine_above(horizon, tangent_slope));
-  const V wanted = hn::Ceil(hn::MulSub(blocked, per_weight, offset));
+  const V wanted = hn::Ceil(mul_sub(blocked, per_weight, offset));
   const V count = hn::IfThenElse(hn::Lt(horizon, unreachable),
                                  hn::Min(hn::Max(wanted, zero), hn::Set(kF, float{kMostHits})), zero);
   const V weight_of_hit = hn::Div(one, hn::Max(per_weight, hn::Set(kF, 1e-30f)));

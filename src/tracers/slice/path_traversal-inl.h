@@ -189,7 +189,7 @@ HWY_INLINE int PathTraversal::segments_to_skip(const SlicePacket& packet, const 
 HWY_INLINE V height_at(const Crossing& crossing, const float* heights, size_t part, const Lanes& lanes) {
   const V a = hn::LoadU(kF, heights + crossing.a + part * kWidth);
   const V b = hn::LoadU(kF, heights + crossing.b + part * kWidth);
-  const V along_edge = hn::MulSub(hn::Set(kF, crossing.fraction), hn::Sub(b, a), lanes.rise.part[part]);
+  const V along_edge = mul_sub(hn::Set(kF, crossing.fraction), hn::Sub(b, a), lanes.rise.part[part]);
   return hn::Add(hn::Sub(a, lanes.base.part[part]), along_edge);
 }
 

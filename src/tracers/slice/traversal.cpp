@@ -99,39 +99,39 @@ HWY_INLINE void PathTraversal::find_segment_hits(const SlicePacket& packet, int 
   const float* heights = pyramid_.heights.at(window.x, window.y);
   for_each_crossing(
       packet, segment, lanes,
-      [&](size_t p, V slope, const glm::ivec2& corner, const Crossing& crossing,
-          const FacetBefore& facet) HWY_ATTR {
-        auto hit = hn::Ge(slope, lanes.slope.part[p]);
-        if (hn::AllFalse(kF, hit)) return;
-        const Crossing& entry = (&crossing)[-1];
-        const V entered = hn::Set(kF, (&facet)[-1].along), left = hn::Set(kF, facet.along);
-        // Heights over the start at which the path enters and leaves the facet.
-        const V near_height = height_at(entry, heights, p, lanes), near_distance = hn::Add(near, entered);
-        const V far_height = height_at(crossing, heights, p, lanes), far_distance = hn::Add(near, left);
-        do {
-          // Heights of the ray above the facet where it enters, and below it where it leaves.
-          const V next = lanes.slope.part[p];
-          const V above = hn::Max(zero, hn::MulSub(next, near_distance, near_height));
-          const V below = hn::Max(hn::Set(kF, 1e-30f), hn::NegMulAdd(next, far_distance, far_height));
-          const V along = hn::MulAdd(hn::Div(above, hn::Add(above, below)), hn::Sub(left, entered), entered);
-          const V distance = hn::Mul(hn::Add(near, along), hn::Sqrt(hn::MulAdd(next, next, one)));
-          alignas(64) float slopes[kWidth], alongs[kWidth], distances[kWidth];
-          hn::Store(next, kF, slopes);
-          hn::Store(along, kF, alongs);
-          hn::Store(distance, kF, distances);
-          for_each_lane(hit, [&](size_t l) {
-            const size_t lane = p * kWidth + l;
-            const size_t next_hit = ++next_hit_[lane];
-            const glm::vec2 in_cell = begin + alongs[l] * direction - glm::vec2(facet.column, facet.row);
-            const glm::vec2 uv = !facet.half ? in_cell : 1.0f - in_cell;
-            view.hits[lane].push_back(
-                {facet_at(corner, facet, static_cast<int>(lane)), 1, uv.x, uv.y, distances[l]});
-            slopes[l] = hits_.slope[next_hit][lane];
+      [&](size_t p, V slope, const glm::ivec2& corner, const Crossing& crossing, const FacetBefore& facet)
+          HWY_ATTR {
+            auto hit = hn::Ge(slope, lanes.slope.part[p]);
+            if (hn::AllFalse(kF, hit)) return;
+            const Crossing& entry = (&crossing)[-1];
+            const V entered = hn::Set(kF, (&facet)[-1].along), left = hn::Set(kF, facet.along);
+            // Heights over the start at which the path enters and leaves the facet.
+            const V near_height = height_at(entry, heights, p, lanes), near_distance = hn::Add(near, entered);
+            const V far_height = height_at(crossing, heights, p, lanes), far_distance = hn::Add(near, left);
+            do {
+              // Heights of the ray above the facet where it enters, and below it where it leaves.
+              const V next = lanes.slope.part[p];
+              const V above = hn::Max(zero, mul_sub(next, near_distance, near_height));
+              const V below = hn::Max(hn::Set(kF, 1e-30f), neg_mul_add(next, far_distance, far_height));
+              const V along = mul_add(hn::Div(above, hn::Add(above, below)), hn::Sub(left, entered), entered);
+              const V distance = hn::Mul(hn::Add(near, along), hn::Sqrt(mul_add(next, next, one)));
+              alignas(64) float slopes[kWidth], alongs[kWidth], distances[kWidth];
+              hn::Store(next, kF, slopes);
+              hn::Store(along, kF, alongs);
+              hn::Store(distance, kF, distances);
+              for_each_lane(hit, [&](size_t l) {
+                const size_t lane = p * kWidth + l;
+                const size_t next_hit = ++next_hit_[lane];
+                const glm::vec2 in_cell = begin + alongs[l] * direction - glm::vec2(facet.column, facet.row);
+                const glm::vec2 uv = !facet.half ? in_cell : 1.0f - in_cell;
+                view.hits[lane].push_back(
+                    {facet_at(corner, facet, static_cast<int>(lane)), 1, uv.x, uv.y, distances[l]});
+                slopes[l] = hits_.slope[next_hit][lane];
+              });
+              lanes.slope.part[p] = hn::Load(kF, slopes);
+              hit = hn::Ge(slope, lanes.slope.part[p]);
+            } while (!hn::AllFalse(kF, hit));
           });
-          lanes.slope.part[p] = hn::Load(kF, slopes);
-          hit = hn::Ge(slope, lanes.slope.part[p]);
-        } while (!hn::AllFalse(kF, hit));
-      });
 }
 
 HWY_INLINE uint32_t PathTraversal::facet_at(glm::ivec2 corner, const FacetBefore& facet, int lane) const {
