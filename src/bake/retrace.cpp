@@ -20,6 +20,18 @@ LightTransport retrace(const MapSettings& map_settings, const BakeSettings& sett
   return *bake(load_map(map_settings, settings.normal_length), only_tracing, context).transport;
 }
 
+namespace {
+
+// Returns what decides the bytes of a bake and its links: two that agree in it belong together.
+Provenance what_decides(const Provenance& provenance) {
+  Provenance record = provenance.is_object() ? provenance : Provenance::object();
+  for (const char* elsewhere : {"command", "input", "input_path", "normals", "normals_path"})
+    record.erase(elsewhere);
+  return record;
+}
+
+}  // namespace
+
 LightTransport transport_from_links(const std::filesystem::path& links_path, const BakeFile& file) {
   LinksFile links = read_links(links_path);
   const Bake& bake = file.bake;
@@ -30,6 +42,8 @@ LightTransport transport_from_links(const std::filesystem::path& links_path, con
     return p.is_object() && p.contains("input_sha256") ? p["input_sha256"].dump() : "";
   };
   if (input(links.provenance) != input(file.provenance)) refuse("is of another map");
+  if (what_decides(links.provenance) != what_decides(file.provenance))
+    refuse("is of another bake of this map");
   const uint64_t texels = static_cast<uint64_t>(bake.width) * static_cast<uint64_t>(bake.height);
   if (links.final_gather.rows != texels)
     refuse(fmt::format("has {} texels, the bake {}", links.final_gather.rows, texels));

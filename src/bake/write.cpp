@@ -32,15 +32,21 @@ Provenance with_paths_from(const std::filesystem::path& file, const Provenance& 
 
 }  // namespace
 
-void write_results(const BakeResult& result, const Provenance& provenance,
-                   const std::filesystem::path& bake_path, const std::filesystem::path& links_path) {
+OutputFile& add_bake_files(const BakeResult& result, const Provenance& provenance,
+                           const std::filesystem::path& bake_path, const std::filesystem::path& links_path,
+                           OutputSet& files) {
   if (!links_path.empty()) {
     const LightTransport& transport = *result.transport;
-    write_links(links_path, transport.final_gather,
+    OutputFile& links = files.add(links_path);
+    write_links(links, transport.final_gather,
                 transport.patch_form_factors.empty() ? nullptr : &transport.patch_form_factors,
                 irradiance_of(transport.patch_direct()), with_paths_from(links_path, provenance));
+    links.finish();
   }
-  write_bake(bake_path, result.planes, with_paths_from(bake_path, provenance));
+  OutputFile& bake = files.add(bake_path);
+  write_bake(bake, result.planes, with_paths_from(bake_path, provenance));
+  bake.finish();
+  return bake;
 }
 
 }  // namespace hemibake

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -20,6 +19,7 @@
 #include "core/error.h"
 #include "core/memory_limit.h"
 #include "io/file_context.h"
+#include "io/output_check.h"
 #include "io/output_file.h"
 
 namespace hemibake {
@@ -48,6 +48,7 @@ void check_outputs(const BakeCommandOptions& options) {
         options.output.string()));
   check_bake_output(options.map, options.output, {".exr", ".tif", ".tiff"});
   if (!options.links.empty()) check_bake_output(options.map, options.links, {".h5", ".hdf5"});
+  refuse_overwriting_inputs({options.output, options.links}, {});
 }
 
 // Replays a texel or says memory and work, without a bake.
@@ -79,7 +80,9 @@ MapOutcome bake_one(BakeCommandOptions options, Again again, const Invocation& i
   if (!options.writes()) return say_beforehand(options, prepared);
   const BakeResult result = bake(prepared);
   const Provenance provenance = record_of(map, result, invocation.context.command);
-  write_results(result, provenance, options.output, options.links);
+  OutputSet files;
+  add_bake_files(result, provenance, options.output, options.links, files);
+  files.commit();
   print_warnings(options.map.map.string(), warnings_of(result));
   nlohmann::ordered_json json = json_from_bake(map, result, provenance);
   const std::optional<BounceMapLoss> loss = bounce_map_loss(result.planes);

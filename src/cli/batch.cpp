@@ -9,7 +9,7 @@
 #include <map>
 
 #include "bake/record.h"
-#include "cli/print/warnings.h"
+#include "cli/print/streams.h"
 #include "core/error.h"
 #include "io/geo_place.h"
 #include "io/image_io.h"
@@ -146,7 +146,7 @@ int run_over_maps(const std::vector<fs::path>& maps, const Invocation& invocatio
   std::vector<std::string> bad;
   int exit_code = 0;
   const auto name_bad = [&](const fs::path& map, const std::string& message) {
-    print_error(message);
+    print_message(message);
     bad.push_back(map.string());
   };
   for (size_t i = 0; i < maps.size(); ++i) {
@@ -163,7 +163,7 @@ int run_over_maps(const std::vector<fs::path>& maps, const Invocation& invocatio
     }
   }
   if (!bad.empty())
-    print_error(fmt::format("{} of {} maps were bad: {}", bad.size(), maps.size(), fmt::join(bad, ", ")));
+    print_message(fmt::format("{} of {} maps were bad: {}", bad.size(), maps.size(), fmt::join(bad, ", ")));
   if (invocation.json) invocation.print({{"maps", done}, {"bad", bad}}, "");
   return bad.empty() ? exit_code : 2;
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include "bake/record.h"
@@ -5,8 +6,10 @@
 #include "cli/options/command.h"
 #include "cli/print/checks.h"
 #include "cli/print/referee.h"
+#include "cli/print/warnings.h"
 #include "core/error.h"
 #include "io/file_context.h"
+#include "io/file_set.h"
 #include "io/output_file.h"
 
 namespace hemibake {
@@ -46,7 +49,15 @@ int run_with_referee(const CheckOptions& options, const Invocation& invocation) 
   return passed ? 0 : 1;
 }
 
+// Says where a file is not of the run that wrote the record beside it.
+void name_mixed_set(const std::filesystem::path& file) {
+  const std::vector<std::string> changed = file_set_state(file.parent_path() / "check.json").changed;
+  if (std::ranges::find(changed, file.filename().string()) != changed.end())
+    print_warnings(file.string(), {"is not of the run that wrote check.json beside it"});
+}
+
 int run_check(const CheckOptions& options, const Invocation& invocation) {
+  name_mixed_set(options.file);
   if (options.referee) return run_with_referee(options, invocation);
   const Checks checks = checks_of_file(options.file, options.tolerance);
   invocation.print(json_from_checks(checks), table_from_checks(checks));

@@ -1,21 +1,18 @@
 #include "cli/commands.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
-#include <cstdio>
 #include <cstdlib>
-#include <new>
+#include <exception>
 
 #include "bake/settings.h"
 #include "cli/command_line.h"
+#include "cli/ending.h"
 #include "cli/options/parser.h"
 #include "cli/print/progress_line.h"
-#include "cli/print/warnings.h"
+#include "cli/print/streams.h"
 #include "cli/signals.h"
-#include "core/error.h"
 #include "io/provenance.h"
 #include "tracers/slice/instruction_sets.h"
 
@@ -37,10 +34,6 @@ CommandSetup setup_report();
 
 namespace {
 
-constexpr int kExitFailedCheck = 1;
-constexpr int kExitBadInput = 2;
-constexpr int kExitInterrupted = 130;
-
 constexpr std::array kCommands = {
     Command{"synth", "write a synthetic height map", setup_synth},
     Command{"bake", "trace the light on a height map", setup_bake},
@@ -60,16 +53,11 @@ constexpr std::array kCommands = {
     Command{"report", "one self-contained HTML page of what 'run' wrote", setup_report},
 };
 
-int fail(int code, const std::string& message) {
-  print_error(message);
-  return code;
-}
-
-Context context_of(const ParsedCommand& parsed, int argc, char** argv) {
+Context context_of(const ParsedCommand& parsed, const std::atomic<bool>& cancel, int argc, char** argv) {
   Context context;
   context.threads = parsed.threads;
   if (isatty(STDERR_FILENO) == 1) context.progress = draw_progress_line;
-  context.cancel = &install_signal_handlers();
+  context.cancel = &cancel;
   context.command = command_line({argv, argv + argc});
   return context;
 }
@@ -84,23 +72,18 @@ int run(const ParsedCommand& parsed, const Context& context) {
 std::span<const Command> commands() { return kCommands; }
 
 int run_command_line(int argc, char** argv) {
+  open_standard_streams();
+  end_on_uncaught_exceptions();
+  const std::atomic<bool>& cancel = install_signal_handlers();
   try {
     // For tests: the bytes of a bake are the same on each.
     if (const char* name = std::getenv("HEMIBAKE_TARGETS")) use_instruction_set(name);
     const auto parsed = parse_command_line(argc, argv, kCommands);
-    return parsed ? run(*parsed, context_of(*parsed, argc, argv)) : 0;
-  } catch (const SettingError& error) {
-    return fail(kExitBadInput, error.with_prefix("--"));
-  } catch (const InputError& error) {
-    return fail(kExitBadInput, error.what());
-  } catch (const CheckError& error) {
-    return fail(kExitFailedCheck, error.what());
-  } catch (const Cancelled&) {
-    return fail(kExitInterrupted, "interrupted, no file was left half written");
-  } catch (const std::bad_alloc&) {
-    return fail(kExitBadInput, "out of memory, expected less work (see --dry-run and --memory)");
-  } catch (const std::exception& error) {
-    return fail(kExitFailedCheck, error.what());
+    return parsed ? run(*parsed, context_of(*parsed, cancel, argc, argv)) : 0;
+  } catch (...) {
+    const Ending ending = ending_of(std::current_exception());
+    print_message(ending.message);
+    return ending.exit_code;
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "cli/curve_inputs.h"
 #include "cli/options/command.h"
+#include "cli/print/streams.h"
 #include "fitting/candidates.h"
 
 namespace hemibake {
@@ -31,7 +31,7 @@ int run_compare(const CompareOptions& options, const Invocation& invocation) {
   for (const Candidate& candidate : candidates())
     if (!candidate.needs_ao || sets[0].index == CurveIndex::kAo)
       compared.push_back({&candidate, compare_candidate(candidate, sets)});
-  for (const std::string& line : skipped) fmt::print(stderr, "hemibake: {}\n", line);
+  for (const std::string& line : skipped) print_message(line);
   invocation.print(json_from_comparisons(compared, maps), text_from_comparisons(compared, maps));
   return 0;
 }

@@ -26,7 +26,8 @@ constexpr const char* kResults[] = {"curves.csv", "bake.exr"};
 
 std::string name_of_map(const fs::path& path) {
   const bool is_result = std::ranges::find(kResults, path.filename().string()) != std::end(kResults);
-  return is_result ? fs::absolute(path).lexically_normal().parent_path().filename().string()
+  std::error_code error;
+  return is_result ? fs::absolute(path, error).lexically_normal().parent_path().filename().string()
                    : path.stem().string();
 }
 
@@ -39,8 +40,13 @@ Curves curves_of_file(const fs::path& path) {
 // Returns curves.csv or bake.exr of one map's folder.
 std::optional<fs::path> result_in(const fs::path& folder) {
   for (const char* name : kResults)
-    if (fs::is_regular_file(folder / name)) return folder / name;
+    if (std::error_code not_there; fs::is_regular_file(folder / name, not_there)) return folder / name;
   return std::nullopt;
+}
+
+bool is_folder(const fs::path& path) {
+  std::error_code not_there;
+  return fs::is_directory(path, not_there);
 }
 
 bool begins_like_curves(const fs::path& path) {
@@ -54,19 +60,23 @@ bool begins_like_curves(const fs::path& path) {
 std::vector<fs::path> files_in(const fs::path& folder, std::vector<std::string>& skipped) {
   if (const auto result = result_in(folder)) return {*result};
   std::vector<fs::path> entries, files;
-  for (const auto& entry : fs::directory_iterator(folder)) entries.push_back(entry.path());
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    entries.push_back(entry->path());
+  if (error)
+    throw InputError(fmt::format("{}: could not read the folder: {}", folder.string(), error.message()));
   std::ranges::sort(entries);
   for (const fs::path& entry : entries) {
     const std::string extension = lower_case_extension(entry);
     const fs::path curves = fs::path(entry).replace_extension(".csv");
-    if (fs::is_directory(entry)) {
+    if (is_folder(entry)) {
       if (const auto result = result_in(entry)) files.push_back(*result);
     } else if (extension == ".csv") {
       if (begins_like_curves(entry))
         files.push_back(entry);
       else
         skipped.push_back(entry.string() + ": skipped: no curves");
-    } else if (extension == ".exr" && !fs::exists(curves)) {
+    } else if (extension == ".exr" && !fs::exists(curves, error)) {
       files.push_back(entry);
     }
   }
@@ -109,7 +119,7 @@ std::vector<CurveInput> read_curve_inputs(const std::vector<std::string>& argume
                                           std::vector<std::string>& skipped) {
   std::vector<CurveInput> inputs;
   for (const std::string& argument : arguments) {
-    if (fs::is_directory(argument)) {
+    if (is_folder(argument)) {
       std::vector<CurveInput> found = read_folder(argument, skipped);
       std::ranges::move(found, std::back_inserter(inputs));
     } else {

@@ -9,6 +9,7 @@
 #include "io/bake_file.h"
 #include "io/curves_file.h"
 #include "io/file_context.h"
+#include "io/output_check.h"
 #include "io/output_file.h"
 
 namespace hemibake {
@@ -23,6 +24,7 @@ struct CurvesOptions {
 
 int run_curves(const CurvesOptions& options, const Invocation& invocation) {
   check_output_path(options.output, {".csv"});
+  refuse_overwriting_inputs({options.output}, {options.bake});
   const Bake bake = read_bake(options.bake).bake;
   const Curves curves =
       with_file_context(options.bake, [&] { return make_curves(bake, options.bins, options.index); });

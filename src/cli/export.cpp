@@ -14,6 +14,7 @@
 #include "io/file_context.h"
 #include "io/fit_file.h"
 #include "io/model_table.h"
+#include "io/output_check.h"
 #include "io/output_file.h"
 #include "model/shader_text.h"
 
@@ -203,6 +204,7 @@ int run_export(const ExportOptions& options, const Invocation& invocation) {
   const Target& target = target_of(options);
   check_prefix(options.prefix);
   check_output_path(options.output);
+  refuse_overwriting_inputs({options.output}, {options.fits});
   const Export made = make_export(options);
   if (target.language) {
     OutputFile output(options.output);

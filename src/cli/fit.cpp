@@ -1,16 +1,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "cli/curve_inputs.h"
 #include "cli/options/command.h"
 #include "cli/print/fits.h"
+#include "cli/print/streams.h"
 #include "cli/print/warnings.h"
 #include "fitting/models.h"
 #include "io/file_context.h"
 #include "io/fit_file.h"
+#include "io/output_check.h"
 #include "io/output_file.h"
 #include "io/provenance.h"
 
@@ -54,6 +55,7 @@ int run_fit(const FitOptions& options, const Invocation& invocation) {
   const Weights weights = weights_from_string(options.weights);
   std::vector<std::string> skipped;
   const std::vector<CurveInput> inputs = read_curve_inputs(options.curves, skipped);
+  for (const CurveInput& input : inputs) refuse_overwriting_inputs({options.output}, {input.path});
   if (abscissa == Abscissa::kMayaux2018 && inputs.size() > 1)
     throw InputError("--abscissa published: several sets of curves, expected one");
   const std::vector<MapCurves> maps = maps_of(inputs);
@@ -65,7 +67,7 @@ int run_fit(const FitOptions& options, const Invocation& invocation) {
                      std::move(fits.comparison)};
   write_fits(options.output, file);
 
-  for (const std::string& line : skipped) fmt::print(stderr, "hemibake: {}\n", line);
+  for (const std::string& line : skipped) print_message(line);
   print_warnings(names, fit_warnings(file.fits));
   invocation.print(json_from_fits(file),
                    text_from_fits(file.fits) + text_from_comparison(file.comparison, file.fits));

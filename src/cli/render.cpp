@@ -1,14 +1,19 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "bake/record.h"
 #include "cli/render_options.h"
 #include "cli/render_scene.h"
 #include "cli/result_folder.h"
 #include "core/constants.h"
 #include "core/parallel.h"
 #include "io/bake_file.h"
+#include "io/file_set.h"
+#include "io/image_io.h"
+#include "io/output_check.h"
 #include "io/output_file.h"
 #include "io/picture_text.h"
 #include "io/table_io.h"
@@ -20,21 +25,70 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRecord = "render.json";
 
-// Pictures that an earlier run left and this one does not make would pass for this one's.
-void remove_earlier_pictures(const fs::path& folder) {
-  if (!fs::is_regular_file(folder / kRecord)) return;
-  nlohmann::ordered_json earlier;
+// Returns whether an image says that a render made it.
+bool is_rendered(const fs::path& image) {
   try {
-    earlier = read_json(folder / kRecord);
-    for (const auto& picture : earlier.at("pictures"))
-      for (const auto& file : picture.at("files")) {
-        const fs::path name = file.get<std::string>();
-        if (name == name.filename()) fs::remove(folder / name);
-      }
+    const Provenance made = read_image_header(image).provenance;
+    return made.is_object() && made.value("command", "").starts_with("hemibake render");
+  } catch (const InputError&) {
+    return false;
   } catch (const nlohmann::json::exception&) {
-    throw InputError((folder / kRecord).string() +
-                     ": is not the record of a render, expected another folder");
+    return false;
   }
+}
+
+// Returns the pictures that an earlier run recorded in the folder and that say themselves what they are. A
+// record can say anything: what it names is not removed for that alone.
+std::vector<fs::path> earlier_pictures(const fs::path& folder) {
+  const fs::path record = folder / kRecord;
+  std::error_code not_there;
+  if (!fs::exists(record, not_there)) return {};
+  const nlohmann::ordered_json earlier = read_json(record);
+  if (!earlier.is_object() || !earlier.contains("pictures") || !earlier["pictures"].is_array())
+    throw InputError(record.string() + ": is not the record of a render, expected another folder");
+  std::vector<fs::path> pictures;
+  for (const auto& picture : earlier["pictures"]) {
+    if (!picture.is_object() || !picture.contains("files") || !picture["files"].is_array()) continue;
+    for (const auto& file : picture["files"]) {
+      if (!file.is_string()) continue;
+      const fs::path name = file.get<std::string>();
+      const fs::path path = folder / name;
+      if (name == name.filename() && fs::is_regular_file(fs::symlink_status(path, not_there)) &&
+          is_rendered(path))
+        pictures.push_back(path);
+    }
+  }
+  return pictures;
+}
+
+// Removes the pictures of an earlier run that this one did not make: they would pass for this one's.
+void remove_others(const std::vector<fs::path>& earlier, const std::vector<fs::path>& written) {
+  for (const fs::path& picture : earlier) {
+    std::error_code not_there;
+    if (std::ranges::find(written, picture) == written.end()) fs::remove(picture, not_there);
+  }
+}
+
+// Refuses a bake and fits of one folder that are not of one run.
+void check_run_of(const RenderOptions& options) {
+  std::error_code not_there;
+  const fs::path folder = fs::absolute(options.bake, not_there).parent_path();
+  if (fs::equivalent(folder, fs::absolute(options.fit, not_there).parent_path(), not_there))
+    check_file_set(folder / "check.json", {"fit.json"});
+}
+
+// Returns every file that a render reads; names that are no files are left out when they are compared.
+std::vector<fs::path> inputs_of(const RenderOptions& options, const Provenance& of_bake) {
+  std::vector<fs::path> inputs = {options.bake, options.links, options.fit, options.sky_file(),
+                                  options.albedo};
+  try {
+    const MapSettings map = recorded_map_settings(of_bake, options.bake);
+    inputs.push_back(map.map);
+    inputs.push_back(map.normal_map);
+  } catch (const InputError&) {
+    // Its map is not there, and so nothing of it can be written over.
+  }
+  return inputs;
 }
 
 nlohmann::ordered_json json_from_error(const PictureError& error) {
@@ -90,24 +144,33 @@ std::string describe(const RenderOptions& options, const nlohmann::ordered_json&
 
 int run_render(RenderOptions& options, const Invocation& invocation) {
   resolve(options);
+  if (!options.fit.empty()) check_run_of(options);
   BakeFile file = read_bake(options.bake);
   show_holes_as_open_ground(file.bake);
   const Provenance provenance = make_provenance(invocation.context.command, options.bake);
   const ResultFolder folder(options.folder);
   check_output_path(options.folder / kRecord);
+  const std::vector<fs::path> inputs = inputs_of(options, file.provenance);
+  refuse_overwriting_inputs({options.folder / kRecord}, inputs);
+  const std::vector<fs::path> earlier = earlier_pictures(options.folder);
 
   const RenderedScene rendered = shade_scene(options, std::move(file), invocation.context);
   const SceneImages shaded = make_scene_images(rendered.scene, options.picture);
-  remove_earlier_pictures(options.folder);
-  Gallery gallery(options.folder, provenance);
+  OutputSet files;
+  OutputFile& record = files.add(options.folder / kRecord);
+  Gallery gallery(options.folder, provenance, files);
   draw(options, rendered.scene, shaded, gallery);
+  refuse_overwriting_inputs(files.paths(), inputs);
 
   nlohmann::ordered_json json = provenance;
   json["light"] = json_from_light(rendered);
   json["exposure_ev"] = shaded.exposure_ev;
   json["errors"] = errors_of(shaded);
   json.update(gallery.json());
-  write_json(options.folder / kRecord, json);
+  json["files"] = hashes_of(gallery.files());
+  write_json(record, json);
+  files.commit();
+  remove_others(earlier, files.paths());
   json["cpu_seconds"] = process_cpu_seconds();
   invocation.print(json, describe(options, json, gallery));
   return 0;

@@ -4,8 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/options/command.h"
+#include "cli/print/streams.h"
 #include "core/error.h"
 #include "io/file_context.h"
+#include "io/file_set.h"
+#include "io/output_check.h"
 #include "io/output_file.h"
 #include "report/html_data.h"
 #include "report/html_folder.h"
@@ -25,12 +28,29 @@ struct ReportOptions {
   int image_size = 512;
 };
 
+// Files of a folder that name others.
+constexpr const char* kRecords[] = {"check.json", "trade.json", "render.json", "pictures/render.json"};
+
+// Returns the files that a report may read from a folder by a fixed name.
+std::vector<std::filesystem::path> inputs_of(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> inputs;
+  for (const char* name : {"bake.exr", "curves.csv", "fit.json", "run.json"}) inputs.push_back(folder / name);
+  for (const char* record : kRecords) inputs.push_back(folder / record);
+  return inputs;
+}
+
 int run_report(ReportOptions options, const Invocation& invocation) {
   if (page_template().empty())
     throw InputError("report: this build has no report, expected one made with Node and npm");
   if (options.output.empty()) options.output = options.folder / "report.html";
+  for (const char* record : kRecords) check_file_set(options.folder / record, {"fit.json"});
   const ReportFolder folder = read_report_folder(options.folder);
   check_output_path(options.output, {".html", ".htm"});
+  refuse_overwriting_inputs({options.output}, inputs_of(options.folder));
+  for (const char* record : kRecords)
+    for (const std::string& name : file_set_state(options.folder / record).missing)
+      print_message(
+          fmt::format("{}: warning: names {}, which is not there", (options.folder / record).string(), name));
 
   Bake bake = folder.bake ? folder.bake->bake : Bake{};
   show_holes_as_open_ground(bake);

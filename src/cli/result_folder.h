@@ -16,7 +16,7 @@ class ResultFolder {
   explicit ResultFolder(const std::filesystem::path& path) : path_(path) {
     std::error_code error;
     made_ = std::filesystem::create_directory(path, error);
-    if (error || !std::filesystem::is_directory(path))
+    if (error || !std::filesystem::is_directory(path, error))
       throw InputError(
           fmt::format("{}: could not make the folder: {}, expected a folder or a new name in one",
                       path.string(), error ? error.message() : "a file of that name is there"));

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,6 +14,7 @@
 #include "cli/print/checks.h"
 #include "cli/print/fits.h"
 #include "cli/print/map.h"
+#include "cli/print/streams.h"
 #include "cli/print/textures.h"
 #include "cli/print/warnings.h"
 #include "cli/result_folder.h"
@@ -26,13 +26,18 @@
 #include "io/bake_file.h"
 #include "io/curves_file.h"
 #include "io/file_context.h"
+#include "io/file_set.h"
 #include "io/fit_file.h"
+#include "io/output_check.h"
 #include "io/output_file.h"
 
 namespace hemibake {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Names the other files of a run with their hashes.
+constexpr const char* kRecord = "check.json";
 
 struct RunOptions : BakeOptions {
   std::vector<std::string> maps;
@@ -52,36 +57,65 @@ std::string describe_fits(const FitFile& file) {
 }
 
 // A map may have too few AO values for a fit (flat ground has one): that is said, and leaves the rest whole.
-// The fit.json of an earlier run would then pass for this one's.
-std::optional<FitFile> write_fits_of(const Curves& curves, const RunOptions& options,
-                                     const Provenance& provenance) {
-  const fs::path path = options.folder / "fit.json";
-  FitFile fits;
+std::optional<FitFile> fits_of(const Curves& curves, const RunOptions& options,
+                               const Provenance& provenance) {
   try {
-    fits = fit_all(options.map.map.stem().string(), curves, provenance);
+    FitFile fits = fit_all(options.map.map.stem().string(), curves, provenance);
+    print_warnings(options.map.map.string(), fit_warnings(fits.fits));
+    return fits;
   } catch (const std::runtime_error& error) {
     throw_if_cancelled();
-    fmt::print(stderr, "hemibake: {}: no fit: {}\n", options.map.map.string(), error.what());
-    fs::remove(path);
+    print_message(fmt::format("{}: no fit: {}", options.map.map.string(), error.what()));
     return std::nullopt;
   }
-  write_fits(path, fits);
-  print_warnings(options.map.map.string(), fit_warnings(fits.fits));
-  return fits;
+}
+
+// What a run found, besides the bake.
+struct RunResults {
+  Curves curves;
+  Checks checks;
+  std::optional<FitFile> fits;
+};
+
+// Writes all files before the first gets its name. The record comes first: a run that is killed between two
+// names leaves one that other files do not match.
+void write_run(const RunOptions& options, const BakeResult& bake, const Provenance& provenance,
+               const RunResults& results) {
+  OutputSet files;
+  OutputFile& record = files.add(options.folder / kRecord);
+  std::vector<OutputFile*> named = {
+      &add_bake_files(bake, provenance, options.folder / "bake.exr", options.links, files)};
+  named.push_back(&files.add(options.folder / "curves.csv"));
+  write_curves(*named.back(), results.curves);
+  if (results.fits) {
+    named.push_back(&files.add(options.folder / "fit.json"));
+    write_fits(*named.back(), *results.fits);
+  }
+  nlohmann::ordered_json json = json_from_checks(results.checks);
+  json["files"] = hashes_of(named);
+  write_json(record, json);
+  files.commit();
+  // The fit.json of an earlier run would pass for this one's.
+  std::error_code not_there;
+  if (!results.fits) fs::remove(options.folder / "fit.json", not_there);
 }
 
 void check_outputs(const RunOptions& options) {
   if (!options.bake.wants(BakeOutput::kAo) || !options.bake.wants(BakeOutput::kIrradiance))
     throw InputError("--outputs: curves need ao and irradiance, expected both among them");
-  for (const char* name : {"bake.exr", "curves.csv", "fit.json", "check.json"})
-    check_bake_output(options.map, options.folder / name);
+  std::vector<fs::path> outputs = {options.links};
+  for (const char* name : {"bake.exr", "curves.csv", "fit.json", kRecord}) {
+    outputs.push_back(options.folder / name);
+    check_bake_output(options.map, outputs.back());
+  }
   if (!options.links.empty()) check_bake_output(options.map, options.links, {".h5", ".hdf5"});
+  refuse_overwriting_inputs(outputs, {});
 }
 
 // Returns whether the results of an earlier run are there and those of this one would be the same.
 bool was_run(const RunOptions& options, const LoadedMap& map) {
-  std::error_code not_there;
-  return std::filesystem::exists(options.folder / "check.json", not_there) &&
+  const FileSetState state = file_set_state(options.folder / kRecord);
+  return state.is_recorded && state.changed.empty() && state.missing.empty() &&
          records(options.folder / "bake.exr", wanted_record(map, options.bake));
 }
 
@@ -98,16 +132,14 @@ MapOutcome run_one(RunOptions options, Again again, const Invocation& invocation
   const BakeResult result =
       with_file_context(options.map.map, [&] { return bake(map, options.bake, invocation.context); });
   const Provenance provenance = record_of(map, result, invocation.context.command);
-  write_results(result, provenance, options.folder / "bake.exr", options.links);
-
-  const Curves curves = make_curves(result.planes, options.bins);
-  write_curves(options.folder / "curves.csv", curves);
-
-  const Checks checks = checks_of_bake({result.planes, provenance}, std::nullopt);
-  write_json(options.folder / "check.json", json_from_checks(checks));
+  RunResults results{
+      make_curves(result.planes, options.bins), checks_of_bake({result.planes, provenance}, {}), {}};
   print_warnings(options.map.map.string(), warnings_of(result));
+  results.fits = fits_of(results.curves, options, provenance);
+  write_run(options, result, provenance, results);
 
-  const std::optional<FitFile> fits = write_fits_of(curves, options, provenance);
+  const std::optional<FitFile>& fits = results.fits;
+  const Checks& checks = results.checks;
   nlohmann::ordered_json json = json_from_bake(map, result, provenance);
   const std::optional<BounceMapLoss> loss = bounce_map_loss(result.planes);
   json["bounce_map"] = json_from_bounce_map(loss);

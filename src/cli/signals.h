@@ -5,8 +5,9 @@
 
 namespace hemibake {
 
-// Makes SIGINT and SIGTERM set the returned flag instead of killing the process; a second one kills. SIGXFSZ
-// and SIGPIPE are ignored, so that a failed write comes back as an error of that write.
+// Makes SIGINT, SIGTERM and SIGHUP set the returned flag instead of killing the process; a second one kills,
+// and what the caller ignores, as `nohup` does, stays ignored. SIGXFSZ and SIGPIPE are ignored: a failed
+// write comes back as an error of that write.
 const std::atomic<bool>& install_signal_handlers();
 
 }  // namespace hemibake

@@ -21,6 +21,7 @@
 #include "io/bake_file.h"
 #include "io/file_context.h"
 #include "io/image_io.h"
+#include "io/output_check.h"
 #include "io/output_file.h"
 #include "textures/make_textures.h"
 #include "textures/planes.h"
@@ -57,16 +58,10 @@ bool is_bake(const fs::path& path) {
 }
 
 void check_outputs(const TexturesOptions& options, const std::string& name) {
-  const auto is_file = [](const fs::path& path) {
-    std::error_code not_there;
-    return fs::is_regular_file(path, not_there);
-  };
-  for (const fs::path& path : texture_paths(options.textures, options.folder, name)) {
-    check_bake_output(options.map, path);
-    for (const fs::path& input : {fs::path(options.textures.roughness), fs::path(options.textures.metallic)})
-      if (is_file(path) && is_file(input) && fs::equivalent(path, input))
-        throw InputError(path.string() + ": is an input itself, expected another name for the output");
-  }
+  const std::vector<fs::path> outputs = texture_paths(options.textures, options.folder, name);
+  for (const fs::path& path : outputs) check_output_path(path);
+  refuse_overwriting_inputs(outputs, {options.map.map, options.map.normal_map, options.textures.roughness,
+                                      options.textures.metallic});
 }
 
 void refuse_options_of_a_bake(const TexturesOptions& options, const Invocation& invocation) {
@@ -111,6 +106,8 @@ std::vector<WrittenTexture> textures_of_bake(const TexturesOptions& options, con
   TerrainPlanes terrain;
   if (options.textures.wants_terrain()) {
     const MapSettings of_bake = recorded_map_settings(file.provenance, options.map.map);
+    refuse_overwriting_inputs(texture_paths(options.textures, options.folder, name),
+                              {of_bake.map, of_bake.normal_map});
     terrain = terrain_of(load_map(of_bake).surface, of_bake.map, options.textures,
                          recorded_bake_settings(file.provenance, options.map.map).margin);
   }

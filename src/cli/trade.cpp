@@ -8,13 +8,19 @@
 #include "cli/options/bake_options.h"
 #include "cli/print/study.h"
 #include "cli/result_folder.h"
+#include "core/error.h"
 #include "core/memory_limit.h"
+#include "io/file_set.h"
+#include "io/output_check.h"
+#include "io/output_file.h"
 #include "io/table_io.h"
 #include "trade/study.h"
 #include "trade/trade_file.h"
 
 namespace hemibake {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct TradeOptions {
   MapSettings map;
@@ -29,13 +35,41 @@ Effort effort_of(const std::string& name) {
   return Effort::kFull;
 }
 
+// Refuses a map in the folders that a study fills.
+void check_folder(const TradeOptions& options) {
+  std::vector<fs::path> outputs;
+  for (const char* name : {"trade.json", "trade.csv", "reference.exr", "reference.json"}) {
+    outputs.push_back(options.folder / name);
+    check_bake_output(options.map, outputs.back());
+  }
+  refuse_overwriting_inputs(outputs, {});
+  for (const fs::path& input : {options.map.map, options.map.normal_map})
+    for (const char* name : {"runs", "planes", "errors"}) {
+      std::error_code not_there;
+      if (!input.empty() &&
+          fs::equivalent(fs::absolute(input, not_there).parent_path(), options.folder / name, not_there))
+        throw InputError(fmt::format(
+            "{}: is in a folder that the study fills, expected another folder for either", input.string()));
+    }
+}
+
+// Writes the table and its record, which names it.
+void write_results(const fs::path& folder, const Study& study, nlohmann::ordered_json json) {
+  OutputSet files;
+  OutputFile& record = files.add(folder / "trade.json");
+  OutputFile& table = files.add(folder / "trade.csv");
+  write_trade_csv(table, study);
+  json["files"] = hashes_of({&table});
+  write_json(record, json);
+  files.commit();
+}
+
 int run_trade(TradeOptions& options, const Invocation& invocation) {
   BakeSettings unused;
   resolve_defaults(options.map, unused, invocation.given);
   validate(options.map, unused, invocation.given);
   const ResultFolder folder(options.folder);
-  for (const char* name : {"trade.json", "trade.csv", "reference.exr", "reference.json"})
-    check_bake_output(options.map, options.folder / name);
+  check_folder(options);
 
   StudyOptions study;
   study.folder = options.folder;
@@ -56,8 +90,7 @@ int run_trade(TradeOptions& options, const Invocation& invocation) {
 
   const nlohmann::ordered_json json =
       json_from_study(result, study.reference.effort, study.provenance, options.folder);
-  write_trade_csv(options.folder / "trade.csv", result);
-  write_json(options.folder / "trade.json", json);
+  write_results(options.folder, result, json);
   const size_t runs = result.runs.size() + 1;
   invocation.print(json, text_of_study(result) +
                              fmt::format("{0} runs, {1} of them on record from before; `hemibake report {2}` "

@@ -173,13 +173,10 @@ void check_ranges(const fs::path& path, const BakeFile& file) {
 bool is_tiff(const std::string& extension) { return extension == ".tif" || extension == ".tiff"; }
 
 // Writes the planes as bands of a TIFF. Open holes are NoData.
-void write_bands(const fs::path& path, const Bake& bake, const Provenance& provenance) {
+void write_bands(OutputFile& file, const Bake& bake, const Provenance& provenance) {
   const std::vector<Plane> planes = planes_of<const float>(bake);
   const GeoPlace place = recorded_place(provenance).value_or(GeoPlace{});
-  OutputFile file(path);
   write_geo_tiff(file, bake.width, bake.height, planes, {place, holes_of(bake)}, provenance);
-  file.finish();
-  file.commit();
 }
 
 // Throws InputError where a texel has no value in one plane, but one in another.
@@ -194,14 +191,20 @@ void check_holes(const fs::path& path, Bake& bake) {
 
 }  // namespace
 
-void write_bake(const fs::path& path, const Bake& bake, const Provenance& provenance) {
+void write_bake(OutputFile& file, const Bake& bake, const Provenance& provenance) {
   check_sizes(bake);
-  const std::string extension = lower_case_extension(path);
-  if (is_tiff(extension)) return write_bands(path, bake, provenance);
+  const std::string extension = lower_case_extension(file.path());
+  if (is_tiff(extension)) return write_bands(file, bake, provenance);
   if (extension != ".exr")
-    throw InputError(fmt::format("{}: a bake cannot be written as '{}', expected .exr or .tif", path.string(),
-                                 path.extension().string()));
-  write_image(path, bake.width, bake.height, planes_of<const float>(bake), provenance);
+    throw InputError(fmt::format("{}: a bake cannot be written as '{}', expected .exr or .tif",
+                                 file.path().string(), file.path().extension().string()));
+  write_image(file, bake.width, bake.height, planes_of<const float>(bake), provenance);
+}
+
+void write_bake(const fs::path& path, const Bake& bake, const Provenance& provenance) {
+  OutputFile file(path);
+  write_bake(file, bake, provenance);
+  file.commit();
 }
 
 BakeFile read_bake(const fs::path& path) {

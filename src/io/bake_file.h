@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "io/output_file.h"
 #include "io/provenance.h"
 #include "transport/baked_planes.h"
 
@@ -18,6 +19,7 @@ struct BakeFile {
 // out planes that are empty. Throws std::logic_error where a plane has another size, all are empty, or a
 // value is not finite, but for holes that the provenance says are open; InputError where the file cannot be
 // written.
+void write_bake(OutputFile& file, const Bake& bake, const Provenance& provenance);
 void write_bake(const std::filesystem::path& path, const Bake& bake, const Provenance& provenance);
 
 // Reads bit for bit the planes written; ignores channels of other names. Throws InputError naming the file

@@ -145,6 +145,8 @@ Curves curves_from_table(const Table& table, const std::filesystem::path& path) 
 
 Curves read_curves(const std::filesystem::path& path) { return curves_from_table(read_csv(path), path); }
 
+void write_curves(OutputFile& file, const Curves& curves) { write_csv(file, table_from_curves(curves)); }
+
 void write_curves(const std::filesystem::path& path, const Curves& curves) {
   write_csv(path, table_from_curves(curves));
 }

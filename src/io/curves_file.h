@@ -16,6 +16,7 @@ Table table_from_curves(const Curves& curves);
 Curves curves_from_table(const Table& table, const std::filesystem::path& path);
 
 Curves read_curves(const std::filesystem::path& path);
+void write_curves(OutputFile& file, const Curves& curves);
 void write_curves(const std::filesystem::path& path, const Curves& curves);
 
 }  // namespace hemibake

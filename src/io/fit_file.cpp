@@ -166,6 +166,8 @@ std::vector<std::string> model_origin(const FitFile& file, ModelKind kind) {
 
 FitFile read_fits(const std::filesystem::path& path) { return fits_from_json(read_json(path), path); }
 
+void write_fits(OutputFile& output, const FitFile& file) { write_json(output, json_from_fits(file)); }
+
 void write_fits(const std::filesystem::path& path, const FitFile& file) {
   write_json(path, json_from_fits(file));
 }

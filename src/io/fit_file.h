@@ -7,6 +7,7 @@
 #include "fitting/fit.h"
 #include "fitting/fitted_model.h"
 #include "fitting/map_comparison.h"
+#include "io/output_file.h"
 #include "io/provenance.h"
 
 namespace hemibake {
@@ -34,6 +35,7 @@ FitFile fits_from_json(const nlohmann::ordered_json& json, const std::filesystem
 std::vector<std::string> model_origin(const FitFile& file, ModelKind kind);
 
 FitFile read_fits(const std::filesystem::path& path);
+void write_fits(OutputFile& output, const FitFile& file);
 void write_fits(const std::filesystem::path& path, const FitFile& file);
 
 }  // namespace hemibake

@@ -83,6 +83,9 @@ ColorImage read_color_image(const std::filesystem::path& path);
 // in every plane, also in write_texture.
 void write_image(const std::filesystem::path& path, int width, int height, std::span<const Plane> planes,
                  const Provenance& provenance);
+// Writes into `file`, which stays to be committed.
+void write_image(OutputFile& file, int width, int height, std::span<const Plane> planes,
+                 const Provenance& provenance);
 
 // Writes one channel `Y`, as write_image.
 void write_height_map(const std::filesystem::path& path, const Grid<float>& heights,
@@ -115,7 +118,9 @@ struct TextureCoding {
 void write_texture(OutputFile& file, int width, int height, std::span<const Plane> planes,
                    const TextureCoding& coding, const Provenance& provenance);
 
-// Writes an 8-bit sRGB PNG of values already encoded for display, clamped to 0..1. Errors as write_image.
+// Writes an 8-bit sRGB PNG of values already encoded for display, clamped to 0..1, into `file`, which stays
+// to be committed. Errors as write_image.
+void write_png8_rgb(OutputFile& file, const Grid<glm::vec3>& picture, const Provenance& provenance);
 void write_png8_rgb(const std::filesystem::path& path, const Grid<glm::vec3>& picture,
                     const Provenance& provenance);
 

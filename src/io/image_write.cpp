@@ -202,21 +202,19 @@ void write_exr(const OutputFile& file, int width, int height, std::span<const Pl
   Writer(file, "openexr", spec).write<float>(planes, as_float);
 }
 
-void write_png16(const fs::path& path, int width, int height, std::span<const Plane> planes,
+void write_png16(const OutputFile& file, int width, int height, std::span<const Plane> planes,
                  const Provenance& provenance) {
   if (planes.size() > 4)
-    throw InputError(
-        fmt::format("{}: {} channels do not fit a PNG, expected an .exr", path.string(), planes.size()));
+    throw InputError(fmt::format("{}: {} channels do not fit a PNG, expected an .exr", file.path().string(),
+                                 planes.size()));
   check_values(
       width, height, planes, Holes::kNone, [](float value) { return value >= 0 && value <= 1; },
       [&](const std::string& what) {
         throw InputError(
-            fmt::format("{}: {}, expected 0..1 in a PNG (an .exr takes any)", path.string(), what));
+            fmt::format("{}: {}, expected 0..1 in a PNG (an .exr takes any)", file.path().string(), what));
       });
   const OIIO::ImageSpec spec = make_spec(width, height, planes, OIIO::TypeDesc::UINT16, provenance);
-  OutputFile file(path);
   Writer(file, "png", spec).write<uint16_t>(planes, to_nearest<uint16_t>);
-  file.commit();
 }
 
 constexpr std::array kTextureFormats = {
@@ -273,19 +271,22 @@ void write_texture(OutputFile& file, int width, int height, std::span<const Plan
   write_png_texture(file, spec, planes, coding);
 }
 
-void write_image(const fs::path& path, int width, int height, std::span<const Plane> planes,
+void write_image(OutputFile& file, int width, int height, std::span<const Plane> planes,
                  const Provenance& provenance) {
   if (width < 1 || height < 1 || planes.empty()) throw std::logic_error("an image to write is empty");
-  check_finite(path, width, height, planes, holes_in(provenance));
-  const std::string extension = lower_case_extension(path);
-  if (extension == ".exr") {
-    OutputFile file(path);
-    write_exr(file, width, height, planes, provenance);
-    return file.commit();
-  }
-  if (extension == ".png") return write_png16(path, width, height, planes, provenance);
+  check_finite(file.path(), width, height, planes, holes_in(provenance));
+  const std::string extension = lower_case_extension(file.path());
+  if (extension == ".exr") return write_exr(file, width, height, planes, provenance);
+  if (extension == ".png") return write_png16(file, width, height, planes, provenance);
   throw InputError(
-      fmt::format("{}: cannot write '{}' files, expected .exr or .png", path.string(), extension));
+      fmt::format("{}: cannot write '{}' files, expected .exr or .png", file.path().string(), extension));
+}
+
+void write_image(const fs::path& path, int width, int height, std::span<const Plane> planes,
+                 const Provenance& provenance) {
+  OutputFile file(path);
+  write_image(file, width, height, planes, provenance);
+  file.commit();
 }
 
 void write_height_map(const fs::path& path, const Grid<float>& heights, const Provenance& provenance) {
@@ -293,17 +294,21 @@ void write_height_map(const fs::path& path, const Grid<float>& heights, const Pr
   write_image(path, heights.width, heights.height, {&plane, 1}, provenance);
 }
 
-void write_png8_rgb(const fs::path& path, const Grid<glm::vec3>& picture, const Provenance& provenance) {
+void write_png8_rgb(OutputFile& file, const Grid<glm::vec3>& picture, const Provenance& provenance) {
   if (picture.empty()) throw std::logic_error("a picture to write is empty");
   const std::array planes{Plane{"R", &picture.values[0].x, 3}, Plane{"G", &picture.values[0].y, 3},
                           Plane{"B", &picture.values[0].z, 3}};
-  check_finite(path, picture.width, picture.height, planes, Holes::kNone);
+  check_finite(file.path(), picture.width, picture.height, planes, Holes::kNone);
   OIIO::ImageSpec spec = make_spec(picture.width, picture.height, planes, OIIO::TypeDesc::UINT8, provenance);
   spec.attribute("oiio:ColorSpace", "sRGB");
-  OutputFile file(path);
   Writer(file, "png", spec).write<uint8_t>(planes, [](float value, size_t, size_t) {
     return static_cast<uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
   });
+}
+
+void write_png8_rgb(const fs::path& path, const Grid<glm::vec3>& picture, const Provenance& provenance) {
+  OutputFile file(path);
+  write_png8_rgb(file, picture, provenance);
   file.commit();
 }
 

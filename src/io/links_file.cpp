@@ -131,7 +131,9 @@ StoredMatrix write_matrix(hid_t file, const char* name, const FormFactorMatrix& 
 Hdf5Handle create_file(const fs::path& path, uint64_t head_bytes) {
   const Hdf5Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   checked(H5Pset_userblock(properties.id(), head_bytes));
-  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, properties.id(), H5P_DEFAULT), H5Fclose};
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  checked(H5Pset_file_locking(access.id(), false, true));  // the OutputFile holds a lock
+  return {H5Fcreate(path.c_str(), H5F_ACC_TRUNC, properties.id(), access.id()), H5Fclose};
 }
 
 void check_rows(const FormFactorMatrix& links, const std::string& name) {
@@ -143,7 +145,7 @@ void check_rows(const FormFactorMatrix& links, const std::string& name) {
 
 }  // namespace
 
-void write_links(const fs::path& path, const FormFactorMatrix& final_gather, const FormFactorMatrix* patches,
+void write_links(OutputFile& output, const FormFactorMatrix& final_gather, const FormFactorMatrix* patches,
                  std::span<const float> direct, const Provenance& provenance) {
   check_provenance(provenance);
   const FormFactorMatrix& between_patches = patches ? *patches : final_gather;
@@ -154,7 +156,7 @@ void write_links(const fs::path& path, const FormFactorMatrix& final_gather, con
   expect_equal(direct.size(), size_t{final_gather.columns}, "values of direct");
   for (const float value : direct)
     if (!std::isfinite(value)) fail_expectation("E0 of a patch", static_cast<double>(value), 0);
-  OutputFile output(path);
+  const fs::path& path = output.path();
   const Hdf5Silence silence;
   const uint64_t head_bytes = links_head_bytes(provenance);
   LinksLayout layout;
@@ -180,7 +182,13 @@ void write_links(const fs::path& path, const FormFactorMatrix& final_gather, con
   layout.file_bytes = fs::file_size(output.temporary_path(), error);
   if (error) fail_write(path, error.value());
   output.write(links_head(layout, head_bytes));  // from offset 0: over the user block
-  output.commit();
+}
+
+void write_links(const fs::path& path, const FormFactorMatrix& final_gather, const FormFactorMatrix* patches,
+                 std::span<const float> direct, const Provenance& provenance) {
+  OutputFile file(path);
+  write_links(file, final_gather, patches, direct, provenance);
+  file.commit();
 }
 
 }  // namespace hemibake

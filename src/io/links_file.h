@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "io/output_file.h"
 #include "io/provenance.h"
 #include "transport/links/form_factors.h"
 
@@ -24,6 +25,8 @@ struct LinksFile {
 // patches:      patch × patch; null: final_gather itself, stored once under both names.
 // direct:       E₀ of every patch, 0..π.
 // provenance:   becomes attributes `hemibake:NAME` of the file, with integers of 64 bits.
+void write_links(OutputFile& output, const FormFactorMatrix& final_gather, const FormFactorMatrix* patches,
+                 std::span<const float> direct, const Provenance& provenance);
 void write_links(const std::filesystem::path& path, const FormFactorMatrix& final_gather,
                  const FormFactorMatrix* patches, std::span<const float> direct,
                  const Provenance& provenance);

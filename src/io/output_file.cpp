@@ -1,32 +1,25 @@
 #include "io/output_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <string>
 
 #include "core/error.h"
+#include "core/temporary_file.h"
 
 namespace hemibake {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the file that gets replaced: the path itself, or the target of a symbolic link.
-fs::path resolve_target(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_symlink(path, error)) return path;
-  const fs::path target = fs::weakly_canonical(path, error);
-  return error ? path : target;
-}
+constexpr int kMostLinks = 40;  // as the kernel follows
 
 // Refuses a target that plain writing would refuse: a rename over a device or a read-only file succeeds, and
 // destroys it.
@@ -42,16 +35,27 @@ void check_replaceable(const fs::path& path, const fs::path& target) {
   if (access(target.c_str(), W_OK) != 0) fail_write(path, errno);
 }
 
-fs::path make_temporary_name(const fs::path& target) {
-  static std::atomic<unsigned> serial{0};
-  return target.parent_path() /
-         fmt::format(".{}.{}-{}{}", target.stem().string(), getpid(), serial++, target.extension().string());
+// Gives a new file the permissions of the one that it replaces, and its owner where that is allowed.
+void keep_mode(int descriptor, const struct stat& replaced) {
+  const bool same_owner = fchown(descriptor, replaced.st_uid, replaced.st_gid) == 0;
+  fchmod(descriptor, replaced.st_mode & (same_owner ? 07777U : 0777U));
 }
 
 }  // namespace
 
 void fail_write(const fs::path& path, int error_number) {
   throw InputError(fmt::format("{}: could not write: {}", path.string(), std::strerror(error_number)));
+}
+
+fs::path resolve_target(const fs::path& path) {
+  fs::path target = path;
+  for (int i = 0; i < kMostLinks; ++i) {
+    std::error_code error;
+    const fs::path link = fs::read_symlink(target, error);
+    if (error) return target;
+    target = target.parent_path() / link;
+  }
+  fail_write(path, ELOOP);
 }
 
 std::string lower_case_extension(const fs::path& path) {
@@ -65,14 +69,19 @@ OutputFile::OutputFile(const fs::path& path) : path_(path), target_(resolve_targ
   if (!path_.has_filename())
     throw InputError(fmt::format("'{}': expected the name of a file to write", path_.string()));
   check_replaceable(path_, target_);
-  temporary_path_ = make_temporary_name(target_);
-  descriptor_ = open(temporary_path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail_write(path_, errno);
+  struct stat replaced {};
+  const bool replaces = stat(target_.c_str(), &replaced) == 0;
+  TemporaryFile file = make_temporary_file(target_.parent_path(), replaces ? 0600 : 0666);
+  if (file.descriptor < 0) fail_write(path_, errno);
+  descriptor_ = file.descriptor;
+  temporary_path_ = std::move(file.path);
+  if (replaces) keep_mode(descriptor_, replaced);
 }
 
 OutputFile::~OutputFile() {
-  if (descriptor_ >= 0) close(descriptor_);
+  // Unlinked before its lock goes: until then the name is this one's.
   if (!committed_) unlink(temporary_path_.c_str());
+  close(descriptor_);
 }
 
 void OutputFile::write(std::string_view bytes) {
@@ -85,16 +94,30 @@ void OutputFile::write(std::string_view bytes) {
 }
 
 void OutputFile::finish() {
-  if (fsync(descriptor_) != 0) fail_write(path_, errno);
-  const int closed = close(descriptor_);
-  descriptor_ = -1;
-  if (closed != 0) fail_write(path_, errno);
+  while (fsync(descriptor_) != 0)
+    if (errno != EINTR) fail_write(path_, errno);
+  finished_ = true;
 }
 
 void OutputFile::commit() {
-  if (descriptor_ >= 0) finish();
+  if (!finished_) finish();
   if (rename(temporary_path_.c_str(), target_.c_str()) != 0) fail_write(path_, errno);
   committed_ = true;
+}
+
+OutputFile& OutputSet::add(const fs::path& path) {
+  return *files_.emplace_back(std::make_unique<OutputFile>(path));
+}
+
+std::vector<fs::path> OutputSet::paths() const {
+  std::vector<fs::path> paths;
+  for (const auto& file : files_) paths.push_back(file->path());
+  return paths;
+}
+
+void OutputSet::commit() {
+  for (const auto& file : files_) file->finish();
+  for (const auto& file : files_) file->commit();
 }
 
 void write_text_file(const fs::path& path, std::string_view text) {

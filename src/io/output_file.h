@@ -1,18 +1,21 @@
 // Files that appear under their name only when whole: written under a temporary name in the same folder,
-// renamed by commit(). Errors and Ctrl-C leave nothing behind.
+// renamed by commit(). Errors and Ctrl-C leave nothing behind; what a killed process left, the next that
+// writes into the folder removes.
 #pragma once
 
 #include <filesystem>
 #include <initializer_list>
+#include <memory>
 #include <string_view>
+#include <vector>
 
 namespace hemibake {
 
 class OutputFile {
  public:
-  // Creates the temporary file, empty. Follows a symbolic link: replaces its target. Throws
-  // InputError where the folder is missing or unwritable, or the path is there and is not a writable regular
-  // file.
+  // Creates the temporary file, empty. Follows a symbolic link: replaces its target, or makes it. Keeps the
+  // permissions of a file that it replaces; other hard links to that keep the old file. Throws InputError
+  // where the folder is missing or unwritable, or the path is there and is not a writable regular file.
   explicit OutputFile(const std::filesystem::path& path);
   // Removes the temporary file unless it was committed.
   ~OutputFile();
@@ -20,15 +23,14 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  // Same folder, same extension, of no other process.
+  // Same folder, of no other process (core/temporary_file.h).
   const std::filesystem::path& temporary_path() const { return temporary_path_; }
-  // The temporary file, open for reading and writing at offset 0; closed by this object.
+  // The temporary file, open for reading and writing at offset 0, until this object goes.
   int descriptor() const { return descriptor_; }
 
   // Appends. Throws InputError where not everything could be written.
   void write(std::string_view bytes);
-  // Flushes to the disk and closes: commit() can then only fail to rename. Throws InputError where the disk is
-  // full.
+  // Flushes to the disk: commit() can then only fail to rename. Throws InputError where the disk is full.
   void finish();
   // Finishes, where that was not done yet, and renames. To be called once; throws InputError.
   void commit();
@@ -38,7 +40,21 @@ class OutputFile {
   std::filesystem::path target_;
   std::filesystem::path temporary_path_;
   int descriptor_ = -1;
+  bool finished_ = false;
   bool committed_ = false;
+};
+
+// Files that belong together. All are whole under temporary names before the first gets its own.
+class OutputSet {
+ public:
+  // Creates a file of the set, as OutputFile does. Files get their names in the order they were added.
+  OutputFile& add(const std::filesystem::path& path);
+  std::vector<std::filesystem::path> paths() const;
+  // Finishes all files and renames them. To be called once; throws InputError.
+  void commit();
+
+ private:
+  std::vector<std::unique_ptr<OutputFile>> files_;
 };
 
 // Writes `text` as the whole file. Throws InputError as OutputFile does.
@@ -52,6 +68,10 @@ void check_output_path(const std::filesystem::path& path,
 
 // Throws InputError "FILE: could not write: REASON" for an errno value.
 [[noreturn]] void fail_write(const std::filesystem::path& path, int error_number);
+
+// Returns the file that writing to a path replaces or makes: the path itself, or what symbolic links lead to.
+// Throws InputError where they lead in a circle.
+std::filesystem::path resolve_target(const std::filesystem::path& path);
 
 // Returns the extension in lower case, with its dot: ".exr".
 std::string lower_case_extension(const std::filesystem::path& path);

@@ -132,7 +132,7 @@ Table read_csv(const fs::path& path) {
   return table;
 }
 
-void write_csv(const fs::path& path, const Table& table) {
+void write_csv(OutputFile& file, const Table& table) {
   if (table.columns.empty()) throw std::logic_error("a table to write has no columns");
   if (const std::string error = column_error(table.columns); !error.empty())
     throw std::logic_error("a table to write: " + error);
@@ -152,7 +152,13 @@ void write_csv(const fs::path& path, const Table& table) {
     }
     text += '\n';
   }
-  write_text_file(path, text);
+  file.write(text);
+}
+
+void write_csv(const fs::path& path, const Table& table) {
+  OutputFile file(path);
+  write_csv(file, table);
+  file.commit();
 }
 
 std::optional<size_t> find_column(const Table& table, std::string_view name) {
@@ -182,9 +188,15 @@ nlohmann::ordered_json read_json(const fs::path& path) {
   return parse_json(read_whole_file(path, kMaxJsonBytes), path.string());
 }
 
+void write_json(OutputFile& file, const nlohmann::ordered_json& json) {
+  check_finite(json, file.path().filename().string());
+  file.write(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+}
+
 void write_json(const fs::path& path, const nlohmann::ordered_json& json) {
-  check_finite(json, path.filename().string());
-  write_text_file(path, json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  OutputFile file(path);
+  write_json(file, json);
+  file.commit();
 }
 
 }  // namespace hemibake

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/output_file.h"
+
 namespace hemibake {
 
 constexpr size_t kMaxTableBytes = size_t{256} << 20;
@@ -27,6 +29,7 @@ Table read_csv(const std::filesystem::path& path);
 
 // Writes numbers in the shortest form that reads back exactly. Throws std::logic_error for a table that
 // read_csv would refuse; InputError where the file cannot be written.
+void write_csv(OutputFile& file, const Table& table);
 void write_csv(const std::filesystem::path& path, const Table& table);
 
 // Returns the index of the column, if it is there.
@@ -41,6 +44,7 @@ nlohmann::ordered_json read_json(const std::filesystem::path& path);
 
 // Writes with an indent of two spaces and a final line end. Throws std::logic_error naming a number that is
 // not finite; InputError where the file cannot be written.
+void write_json(OutputFile& file, const nlohmann::ordered_json& json);
 void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json);
 
 }  // namespace hemibake

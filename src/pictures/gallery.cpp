@@ -32,20 +32,25 @@ PictureRecord& Gallery::record(const std::string& name, bool has_exr) {
   return picture;
 }
 
+OutputFile& Gallery::add_file(const std::string& name) {
+  written_.push_back(&files_.add(folder_ / name));
+  return *written_.back();
+}
+
 void Gallery::write_exr(const std::string& name, const Grid<float>& values) {
   const Plane plane{"Y", values.values.data()};
-  write_image(folder_ / (name + ".exr"), values.width, values.height, {&plane, 1}, provenance_);
+  write_image(add_file(name + ".exr"), values.width, values.height, {&plane, 1}, provenance_);
 }
 
 void Gallery::write_exr(const std::string& name, const Grid<glm::vec3>& values,
                         const char* const channels[3]) {
   std::array<Plane, 3> planes;
   for (int c = 0; c < 3; ++c) planes[static_cast<size_t>(c)] = {channels[c], &values.values[0][c], 3};
-  write_image(folder_ / (name + ".exr"), values.width, values.height, planes, provenance_);
+  write_image(add_file(name + ".exr"), values.width, values.height, planes, provenance_);
 }
 
 void Gallery::write_png(const std::string& name, const Grid<glm::vec3>& shown) {
-  write_png8_rgb(folder_ / (name + ".png"), shown, provenance_);
+  write_png8_rgb(add_file(name + ".png"), shown, provenance_);
 }
 
 void Gallery::add_light(const std::string& name, const Grid<glm::vec3>& linear, double exposure_ev) {

@@ -10,6 +10,7 @@
 
 #include "core/color.h"
 #include "core/grid.h"
+#include "io/output_file.h"
 #include "io/provenance.h"
 #include "pictures/figure.h"
 
@@ -28,8 +29,9 @@ struct PictureRecord {
 
 class Gallery {
  public:
-  Gallery(std::filesystem::path folder, Provenance provenance)
-      : folder_(std::move(folder)), provenance_(std::move(provenance)) {}
+  // files: takes the pictures and stays to be committed; must outlive the gallery.
+  Gallery(std::filesystem::path folder, Provenance provenance, OutputSet& files)
+      : folder_(std::move(folder)), provenance_(std::move(provenance)), files_(files) {}
 
   // Writes NAME.exr with the light itself, channels R, G, B, and NAME.png at an exposure, in stops.
   void add_light(const std::string& name, const Grid<glm::vec3>& linear, double exposure_ev);
@@ -49,6 +51,9 @@ class Gallery {
   void add_figure(const std::string& name, std::span<const std::vector<Panel>> rows,
                   std::span<const Grid<glm::vec3>> below = {});
 
+  // Returns the files written.
+  const std::vector<OutputFile*>& files() const { return written_; }
+
   void report_missing(const std::string& name, const std::string& reason);
 
   // Returns {"pictures": [{"name", "files", …}], "missing": [{"name", "reason"}]}.
@@ -63,12 +68,15 @@ class Gallery {
 
   PictureRecord& record(const std::string& name, bool has_exr);
   void show_numbers(const std::string& name, const Grid<float>& shown, const ColorScale& scale);
+  OutputFile& add_file(const std::string& name);
   void write_exr(const std::string& name, const Grid<float>& values);
   void write_exr(const std::string& name, const Grid<glm::vec3>& values, const char* const channels[3]);
   void write_png(const std::string& name, const Grid<glm::vec3>& shown);
 
   std::filesystem::path folder_;
   Provenance provenance_;
+  OutputSet& files_;
+  std::vector<OutputFile*> written_;
   std::vector<PictureRecord> pictures_;
   std::vector<Missing> missing_;
 };

@@ -19,9 +19,20 @@ namespace fs = std::filesystem;
 
 constexpr int kDefaultBins = 100;
 
+bool is_there(const fs::path& path) {
+  std::error_code not_there;
+  return fs::exists(path, not_there);
+}
+
+// Returns whether a path is a file in its folder: a symbolic link may lead anywhere.
+bool is_file(const fs::path& path) {
+  std::error_code not_there;
+  return fs::is_regular_file(fs::symlink_status(path, not_there));
+}
+
 // Returns null where the file is not there. list: name of a list that it must have, or empty.
 nlohmann::ordered_json read_if_there(const fs::path& path, const char* list) {
-  if (!fs::exists(path)) return nullptr;
+  if (!is_there(path)) return nullptr;
   nlohmann::ordered_json json = read_json(path);
   if (!json.is_object()) throw InputError(path.string() + ": is not an object of JSON, expected one");
   if (*list != '\0' && (!json.contains(list) || !json[list].is_array()))
@@ -39,10 +50,13 @@ std::optional<double> amplitude_of(const fs::path& path) {
 }
 
 void read_sweep(const fs::path& folder, std::vector<SweepCurves>& sweep) {
-  if (!fs::is_directory(folder)) return;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (const auto amplitude = amplitude_of(entry.path()); amplitude && entry.is_regular_file())
-      sweep.push_back({*amplitude, read_curves(entry.path())});
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) return;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (const auto amplitude = amplitude_of(entry->path()); amplitude && is_file(entry->path()))
+      sweep.push_back({*amplitude, read_curves(entry->path())});
+  if (error)
+    throw InputError(fmt::format("{}: could not read the folder: {}", folder.string(), error.message()));
 }
 
 // Bytes of pictures on a page: with the 8 MiB of a 512 x 512 bake, and a third more as text, it stays below
@@ -62,8 +76,10 @@ void read_pictures(const fs::path& folder, std::vector<ReportPicture>& pictures)
         if (!name.is_string()) continue;
         // A name, wherever the list came from: never a way out of the folder.
         const fs::path file = folder / fs::path(name.get<std::string>()).filename();
-        if (lower_case_extension(file) != ".png" || !fs::is_regular_file(file)) continue;
-        std::string png = fs::file_size(file) <= room ? read_whole_file(file) : std::string();
+        if (lower_case_extension(file) != ".png" || !is_file(file)) continue;
+        std::error_code unknown;
+        const bool fits = fs::file_size(file, unknown) <= room && !unknown;
+        std::string png = fits ? read_whole_file(file) : std::string();
         room -= png.size();
         pictures.push_back({valid_utf8(file.stem().string()), std::move(png)});
       }
@@ -73,17 +89,18 @@ void read_pictures(const fs::path& folder, std::vector<ReportPicture>& pictures)
 }  // namespace
 
 ReportFolder read_report_folder(const fs::path& path) {
-  if (!fs::is_directory(path))
+  std::error_code not_there;
+  if (!fs::is_directory(path, not_there))
     throw InputError(
         fmt::format("{}: is not a folder, expected one that 'hemibake run' wrote", path.string()));
   ReportFolder folder;
   folder.path = path;
-  if (fs::exists(path / "bake.exr")) folder.bake = read_bake(path / "bake.exr");
-  if (fs::exists(path / "curves.csv")) folder.curves = read_curves(path / "curves.csv");
+  if (is_there(path / "bake.exr")) folder.bake = read_bake(path / "bake.exr");
+  if (is_there(path / "curves.csv")) folder.curves = read_curves(path / "curves.csv");
   if (folder.curves && folder.curves->index != CurveIndex::kAo)
     throw InputError(
         fmt::format("{}: curves over visibility, expected curves over ao", (path / "curves.csv").string()));
-  if (fs::exists(path / "fit.json")) folder.fits = read_fits(path / "fit.json");
+  if (is_there(path / "fit.json")) folder.fits = read_fits(path / "fit.json");
   folder.check = read_if_there(path / "check.json", "checks");
   folder.run = read_if_there(path / "run.json", "");
   folder.trade = read_if_there(path / "trade.json", "runs");

@@ -94,9 +94,8 @@ Grid<glm::vec3> angle_weighted_normals(const Surface& surface) {
     const auto p = facet_positions_texels(surface, facet);
     const glm::dvec3 normal = facet_normal(surface, facet);
     for (int c = 0; c < 3; ++c) {
-      const glm::dvec3 a = glm::normalize(p[(c + 1) % 3] - p[c]);
-      const glm::dvec3 b = glm::normalize(p[(c + 2) % 3] - p[c]);
-      // A cosine does not tell the angles of a needle.
+      const glm::dvec3 a = p[(c + 1) % 3] - p[c], b = p[(c + 2) % 3] - p[c];
+      // Neither a cosine nor unit vectors tell the angles of a needle.
       const double angle = std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
       sums(corners.texel[c].x % surface.width(), corners.texel[c].y % surface.height()) += angle * normal;
     }

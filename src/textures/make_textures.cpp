@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "bake/record.h"
@@ -119,7 +118,7 @@ std::vector<WrittenTexture> make_textures(const TextureSource& source, const Pro
   const PackedInputs packed = read_packed_inputs(settings, bake.width, bake.height);
   const std::vector<std::filesystem::path> paths = texture_paths(settings, folder, name);
   const std::optional<BounceMap> chosen = chosen_bounce_map(bake, settings);
-  std::vector<std::unique_ptr<OutputFile>> files;
+  OutputSet files;
   std::vector<WrittenTexture> written;
   for (size_t t = 0; t < paths.size(); ++t) {
     const TextureKind kind = settings.kinds[t];
@@ -134,13 +133,12 @@ std::vector<WrittenTexture> make_textures(const TextureSource& source, const Pro
       planes.push_back({layer.channel, layer.values.values.data()});
       texture.channels.push_back(range_of(layer));
     }
-    files.push_back(std::make_unique<OutputFile>(paths[t]));
-    write_one(*files.back(), bake, planes, settings.coding, holes,
-              record_texture(provenance, bake, settings, kind));
-    files.back()->finish();
+    OutputFile& file = files.add(paths[t]);
+    write_one(file, bake, planes, settings.coding, holes, record_texture(provenance, bake, settings, kind));
+    file.finish();
     written.push_back(std::move(texture));
   }
-  for (const auto& file : files) file->commit();
+  files.commit();
   return written;
 }
 

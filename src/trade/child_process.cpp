@@ -40,6 +40,8 @@ std::string answer_of(const std::function<std::string()>& work) {
     return tagged(kInput, "out of memory, expected a smaller map");
   } catch (const std::exception& error) {
     return tagged(kBug, error.what());
+  } catch (...) {
+    return tagged(kBug, "an exception of an unknown type");
   }
 }
 
@@ -80,6 +82,15 @@ std::string read_all(int pipe_end, pid_t child) {
   }
 }
 
+// status: of waitpid.
+[[noreturn]] void fail_without_answer(const std::string& what, int status) {
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
+    throw InputError(what + ": its process was killed, most likely out of memory, expected a smaller map");
+  throw std::runtime_error(WIFSIGNALED(status)
+                               ? fmt::format("{}: its process was ended by signal {}", what, WTERMSIG(status))
+                               : fmt::format("{}: its process ended without an answer", what));
+}
+
 size_t status_bytes(const std::string& name) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -92,7 +103,9 @@ size_t status_bytes(const std::string& name) {
 std::string run_in_child(const std::string& what, const std::function<std::string()>& work) {
   throw_if_cancelled();
   int ends[2];
-  if (pipe(ends) != 0) throw std::runtime_error(fmt::format("{}: no pipe: {}", what, std::strerror(errno)));
+  if (pipe(ends) != 0)
+    throw InputError(
+        fmt::format("{}: no pipe: {}, expected more open files allowed", what, std::strerror(errno)));
   std::fflush(nullptr);
   const pid_t parent = getpid();
   const pid_t child = fork();
@@ -100,7 +113,8 @@ std::string run_in_child(const std::string& what, const std::function<std::strin
     const int reason = errno;
     close(ends[0]);
     close(ends[1]);
-    throw std::runtime_error(fmt::format("{}: no new process: {}", what, std::strerror(reason)));
+    throw InputError(
+        fmt::format("{}: no new process: {}, expected one more to be allowed", what, std::strerror(reason)));
   }
   if (child == 0) {
     close(ends[0]);
@@ -113,12 +127,7 @@ std::string run_in_child(const std::string& what, const std::function<std::strin
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   throw_if_cancelled();
-  if (answer.empty() || !WIFEXITED(status))
-    throw std::runtime_error(
-        WIFSIGNALED(status)
-            ? fmt::format("{}: its process was ended by signal {} (9: most likely out of memory)", what,
-                          WTERMSIG(status))
-            : fmt::format("{}: its process ended without an answer", what));
+  if (answer.empty() || !WIFEXITED(status)) fail_without_answer(what, status);
   const std::string text = answer.substr(1);
   switch (answer[0]) {
     case kDone:

@@ -1,5 +1,7 @@
 #include "trade/study.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -41,7 +43,8 @@ ordered_json study_key(const StudyOptions& options) {
 template <class Result>
 std::optional<Result> find_record(const fs::path& path, const ordered_json& key,
                                   Result (*from)(const JsonReader&)) {
-  if (!fs::is_regular_file(path)) return std::nullopt;
+  std::error_code not_there;
+  if (!fs::is_regular_file(path, not_there)) return std::nullopt;
   try {
     const ordered_json record = read_json(path);
     if (record.is_object() && record.value("key", ordered_json()) == key)
@@ -92,7 +95,15 @@ ScoredRun make_run(const StudyOptions& options, const TradeRun& run, const Fitte
 
 // Removes the reference's record where its planes are missing.
 void forget_reference_without_planes(const StudyOptions& options, const fs::path& record) {
-  if (!fs::is_regular_file(reference_planes(options))) fs::remove(record);
+  std::error_code not_there;
+  if (!fs::is_regular_file(reference_planes(options), not_there)) fs::remove(record, not_there);
+}
+
+void make_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error)
+    throw InputError(fmt::format("{}: could not make the folder: {}", path.string(), error.message()));
 }
 
 }  // namespace
@@ -106,7 +117,7 @@ Study run_study(const StudyOptions& options) {
   study.reference =
       recorded<ReferenceFacts>({reference_record, "reference"}, key, study.made_now, reference_facts_from,
                                [&options] { return make_reference_files(options); });
-  for (const char* name : {"runs", "planes", "errors"}) fs::create_directories(options.folder / name);
+  for (const char* name : {"runs", "planes", "errors"}) make_folder(options.folder / name);
   const std::vector<TradeRun> sweep = make_sweep(options.reference.effort, study.reference.can_halve);
   Progress progress("trade", sweep.size(), "run");
   for (const TradeRun& run : sweep) {

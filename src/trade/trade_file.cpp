@@ -57,7 +57,7 @@ ordered_json pictures_json(const std::vector<ScoredRun>& runs, const fs::path& f
     for (const size_t p : kFrontPlanes) {
       const std::string& plane = named_planes()[p].name;
       const std::string name = fmt::format("errors/{}-{}.png", run.id(), plane);
-      if (fs::exists(folder / name))
+      if (std::error_code not_there; fs::exists(folder / name, not_there))
         pictures.push_back(
             {{"file", name},
              {"title", fmt::format("{}: error of {}, blue -0.1 to red +0.1", run.id(), plane)}});
@@ -136,7 +136,7 @@ ordered_json json_from_study(const Study& study, Effort effort, const Provenance
   return json;
 }
 
-void write_trade_csv(const fs::path& path, const Study& study) {
+void write_trade_csv(OutputFile& file, const Study& study) {
   std::string text = csv_header();
   for (const LightModelErrors& model : study.reference.models_on_true_ao)
     text += fmt::format("truth,,{},1,,,,", model.model) + cells_of(model);
@@ -148,7 +148,7 @@ void write_trade_csv(const fs::path& path, const Study& study) {
       text += fmt::format("{},{},{}", start, model.model, representative) + cells_of(run.cost, run.known) +
               cells_of(model);
   }
-  write_text_file(path, text);
+  file.write(text);
 }
 
 }  // namespace hemibake

@@ -16,6 +16,7 @@
 //   fronts          {plane: [{"id", "model", "cpu_seconds", "rmse"}]}: the Pareto fronts of "ao", "direct",
 //                   "light.50", cheapest first; model is "" where the run has bounces of its own
 //   series          [{"name", "abscissa", "plane", "slope", "slope_error", "points": [[x, rmse], …]}]
+//   files           {"trade.csv": SHA-256}
 //   pictures        [{"file", "title"}], PNG error maps in the folder of trade.json
 // RUN:
 //   id, method, settings {name: number or string}, series, abscissa, abscissa_value, representative (bool)
@@ -35,6 +36,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
+#include "io/output_file.h"
 #include "io/provenance.h"
 #include "trade/study.h"
 #include "trade/sweep.h"
@@ -47,6 +49,6 @@ const char* effort_name(Effort effort);
 nlohmann::ordered_json json_from_study(const Study& study, Effort effort, const Provenance& provenance,
                                        const std::filesystem::path& folder);
 
-void write_trade_csv(const std::filesystem::path& path, const Study& study);
+void write_trade_csv(OutputFile& file, const Study& study);
 
 }  // namespace hemibake

@@ -85,6 +85,70 @@ TEST_F(BadOutputs, TheInputItself) {
   expect_refusal("run results/bake.exr -o results --rays 4", HasSubstr("is the input itself"));
 }
 
+// Commands that write beside or over what they read, by any name.
+TEST_F(BadOutputs, NoCommandWritesOverItsInput) {
+  run_well("run map.exr --rays 16 -o results");
+  const auto link = [&](const char* target, const char* name) { fs::create_symlink(target, folder_ / name); };
+  link("results/bake.exr", "link.csv");
+  expect_refusal("curves results/bake.exr -o link.csv", HasSubstr("is the input results/bake.exr itself"));
+  link("results/curves.csv", "link.json");
+  expect_refusal("fit results/curves.csv -o link.json", HasSubstr("itself, expected another name"));
+  expect_refusal("export results/fit.json -o results/fit.json --to glsl", HasSubstr("is the input itself"));
+  link("results/bake.exr", "link.html");
+  expect_refusal("report results -o link.html", HasSubstr("is the input results/bake.exr itself"));
+  fs::create_hard_link(folder_ / "map.exr", folder_ / "hard.exr");
+  expect_refusal("bake map.exr -o hard.exr --rays 4", HasSubstr("is the input map.exr itself"));
+  link("both.exr", "both.h5");
+  expect_refusal("bake map.exr -o both.exr --links both.h5 --rays 4",
+                 HasSubstr("is the same file as both.exr"));
+  fs::create_directory(folder_ / "pictures");
+  link("../map.exr", "pictures/render.json");
+  expect_refusal("render results/bake.exr -o pictures", HasSubstr("is the input"));
+}
+
+// The record of a folder can name anything; only pictures go.
+TEST_F(BadOutputs, RenderRemovesOnlyPicturesOfRenders) {
+  run_well("run map.exr --rays 16 -o results");
+  run_well("render results/bake.exr --pictures planes -o results");
+  write_bytes(folder_ / "results/mine.png", "mine");
+  std::string record = read_bytes(folder_ / "results/render.json");
+  const std::string list = "\"pictures\": [";
+  record.insert(
+      record.find(list) + list.size(),
+      "{\"name\": \"x\", \"files\": [\"bake.exr\", \"curves.csv\", \"mine.png\", \"../map.exr\", 3]},");
+  write_bytes(folder_ / "results/render.json", record);
+  ASSERT_TRUE(fs::exists(folder_ / "results/ao.png"));
+  run_well("render results/bake.exr --pictures saturation -o results");
+  for (const char* name : {"results/bake.exr", "results/curves.csv", "results/mine.png", "map.exr"})
+    EXPECT_TRUE(fs::exists(folder_ / name)) << name;
+  EXPECT_FALSE(fs::exists(folder_ / "results/ao.png"));
+}
+
+// A run killed between two names leaves files of two runs.
+TEST_F(BadOutputs, FilesOfTwoRunsAreTold) {
+  run_well("run map.exr --rays 16 -o results");
+  run_well("run map.exr --rays 17 -o others");
+  run_well("report results -o page.html");
+  for (const char* name : {"bake.exr", "curves.csv", "check.json"}) {
+    const std::string before = read_bytes(folder_ / "results" / name);
+    write_bytes(folder_ / "results" / name, read_bytes(folder_ / "others" / name));
+    const std::string path = "results/" + std::string(name == std::string("check.json") ? "bake.exr" : name);
+    expect_refusal("report results -o page.html",
+                   HasSubstr(path + ": is not of the run that wrote check.json"));
+    write_bytes(folder_ / "results" / name, before);
+  }
+  run_well("fit results/curves.csv -o results/fit.json --model visibility");
+  run_well("report results -o page.html");
+}
+
+TEST_F(BadOutputs, LinksOfAnotherBakeAreTold) {
+  run_well("bake map.exr -o a.exr --links a.h5 --rays 16");
+  run_well("bake map.exr -o b.exr --links b.h5 --rays 17");
+  run_well("render a.exr --links a.h5 --albedo 0.5 --sun 30,40,1 --pictures light -o pictures");
+  expect_refusal("render a.exr --links b.h5 --albedo 0.5 --sun 30,40,1 --pictures light -o pictures",
+                 "b.h5: is of another bake of this map, expected the links of this bake");
+}
+
 TEST_F(BadOutputs, FolderThatMayNotBeWritten) {
   if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
   fs::create_directory(folder_ / "closed");
@@ -134,7 +198,9 @@ TEST_F(BadOutputs, StandardOutputThatIsFull) {
   make_results();
   const CommandResult result = run("check done.exr --json >/dev/full");
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_EQ(result.standard_error, "hemibake: standard output: could not write: No space left on device\n");
+  EXPECT_EQ(result.standard_error,
+            "hemibake: standard output: could not write: No space left on device, expected one that takes "
+            "the result\n");
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
-// Interruption by Ctrl-C and SIGTERM in the middle of the work: exit code 130, no file left behind.
+// Interruption by Ctrl-C, SIGTERM and SIGHUP in the middle of the work: exit code 130, no file left behind.
+#include <fmt/format.h>
+
 #include "cli/run_hemibake.h"
 
 namespace hemibake {
@@ -33,6 +35,23 @@ TEST_F(Interrupt, WhileBouncing) {
       "bake map.exr -o new.exr --rays 64 --amplitude 1 --patches texels --converge 1e-12 --max-bounces "
       "1000000",
       "TERM");
+}
+
+// A terminal that closes ends a run as Ctrl-C does, but not one under `nohup`.
+TEST_F(Interrupt, ByATerminalThatCloses) {
+  write_map("map.exr", SyntheticKind::kBricks, 512, 512);
+  expect_clean_end("bake map.exr -o new.exr", "HUP");
+}
+
+TEST_F(Interrupt, IgnoredSignalsStayIgnored) {
+  write_map("map.exr", SyntheticKind::kBricks, 64, 64);
+  for (const char* signal : {"HUP", "INT", "TERM"}) {
+    const CommandResult result = run_shell(fmt::format(
+        "cd '{}' && trap '' {} && {{ '{}' bake map.exr -o out.exr --rays 1024 & }} && pid=$! && sleep 0.3 && "
+        "kill -{} $pid; wait $pid",
+        folder_.path().string(), signal, HEMIBAKE_BINARY, signal));
+    EXPECT_EQ(result.exit_code, 0) << signal << "\n" << result.standard_error;
+  }
 }
 
 }  // namespace

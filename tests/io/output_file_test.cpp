@@ -18,7 +18,6 @@ TEST(OutputFile, AppearsOnlyWhenCommitted) {
   file.write("whole");
   EXPECT_FALSE(fs::exists(folder / "out.exr"));
   EXPECT_TRUE(fs::exists(file.temporary_path()));
-  EXPECT_EQ(file.temporary_path().extension(), ".exr");
   EXPECT_EQ(file.temporary_path().parent_path(), folder.path());
   file.commit();
   EXPECT_EQ(read_bytes(folder / "out.exr"), "whole");
@@ -98,6 +97,35 @@ TEST(OutputFile, CheckOutputPathLeavesNothing) {
               EndsWith("out.jpg: cannot write '.jpg' files, expected .exr or .png"));
   EXPECT_THAT(error_of<InputError>([&] { check_output_path(folder / "out", {".exr"}); }),
               EndsWith("out: cannot write '' files, expected .exr"));
+}
+
+TEST(OutputFile, KeepsThePermissionsOfWhatItReplaces) {
+  const TemporaryFolder folder;
+  write_bytes(folder / "out.csv", "old");
+  for (const fs::perms mode : {fs::perms(0600), fs::perms(0664), fs::perms(0755)}) {
+    fs::permissions(folder / "out.csv", mode);
+    write_text_file(folder / "out.csv", "new");
+    EXPECT_EQ(fs::status(folder / "out.csv").permissions(), mode);
+  }
+}
+
+TEST(OutputFile, FollowsLinksToWhatIsNotThere) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "sub");
+  fs::create_symlink("sub/second", folder / "first");
+  fs::create_symlink("target", folder / "sub/second");
+  write_text_file(folder / "first", "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "first"));
+  EXPECT_EQ(read_bytes(folder / "sub/target"), "new");
+  fs::create_symlink("circle", folder / "circle");
+  EXPECT_THAT(error_of<InputError>([&] { OutputFile{folder / "circle"}; }), HasSubstr("could not write"));
+}
+
+TEST(OutputFile, NamesAsLongAsTheyMayBe) {
+  const TemporaryFolder folder;
+  const std::string name(255, 'x');
+  write_text_file(folder / name, "whole");
+  EXPECT_EQ(read_bytes(folder / name), "whole");
 }
 
 TEST(OutputFile, FullDiskIsOneLineAndLeavesNothing) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/error.h"
+#include "io/output_check.h"
 #include "io/output_file.h"
 
 namespace hemibake {
@@ -40,11 +40,7 @@ void resolve(BakeOptions& options, const Invocation& invocation) {
 void check_bake_output(const MapSettings& map, const std::filesystem::path& output,
                        std::initializer_list<std::string_view> suffixes) {
   check_output_path(output, suffixes);
-  for (const std::filesystem::path& input : {map.map, map.normal_map}) {
-    std::error_code not_there;
-    if (std::filesystem::equivalent(output, input, not_there))
-      throw InputError(output.string() + ": is the input itself, expected another name for the output");
-  }
+  refuse_overwriting_inputs({output}, {map.map, map.normal_map});
 }
 
 }  // namespace hemibake

@@ -1,14 +1,9 @@
 #include "cli/options/command.h"
 
-#include <fmt/format.h>
-
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "core/error.h"
+#include "cli/print/streams.h"
 
 namespace hemibake {
 namespace {
@@ -18,10 +13,8 @@ constexpr int kMaxBins = 65536;
 }  // namespace
 
 void Invocation::print(const nlohmann::json& json_result, const std::string& text) const {
-  const std::string result =
-      json ? json_result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n" : text;
-  if (std::fwrite(result.data(), 1, result.size(), stdout) != result.size() || std::fflush(stdout) != 0)
-    throw InputError(fmt::format("standard output: could not write: {}", std::strerror(errno)));
+  print_result(json ? json_result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"
+                    : text);
 }
 
 Field option(std::string name, Value value, std::string help) {

@@ -5,7 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <cctype>
 #include <memory>
+#include <sstream>
 
+#include "cli/print/streams.h"
 #include "core/error.h"
 #include "core/version.h"
 
@@ -114,7 +116,9 @@ std::optional<ParsedCommand> parse_command_line(int argc, char** argv, std::span
     app->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) throw InputError(describe(error, *app, argc, argv));
-    app->exit(error);  // --help, --version
+    std::ostringstream text;
+    app->exit(error, text, text);  // --help, --version
+    print_result(text.str());
     return std::nullopt;
   }
   const CLI::App* called = app->get_subcommands().front();

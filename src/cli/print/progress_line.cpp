@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <string>
+
+#include "cli/print/streams.h"
 
 namespace hemibake {
 namespace {
@@ -19,16 +21,15 @@ std::string with_prefix(double value) {
 
 void draw_progress_line(const ProgressReport& report) {
   if (report.finished) {
-    fmt::print(stderr, "\r\x1b[K");
+    write_to_standard_error("\r\x1b[K");
     return;
   }
   const double done = static_cast<double>(report.done), total = static_cast<double>(report.total);
   const double rate = done / report.seconds;
   const double fraction = total > 0 ? std::min(1.0, done / total) : 0.0;
   const double left_s = rate > 0 ? std::max(0.0, total - done) / rate : 0.0;
-  fmt::print(stderr, "\r\x1b[K{}: {:3.0f} %  {}{}/s  {:.0f} s left", report.label, 100 * fraction,
-             with_prefix(rate), report.unit, left_s);
-  std::fflush(stderr);
+  write_to_standard_error(fmt::format("\r\x1b[K{}: {:3.0f} %  {}{}/s  {:.0f} s left", report.label,
+                                      100 * fraction, with_prefix(rate), report.unit, left_s));
 }
 
 }  // namespace hemibake

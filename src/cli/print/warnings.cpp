@@ -2,20 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cstdio>
+#include "cli/print/streams.h"
 
 namespace hemibake {
 
-void print_error(std::string message) {
-  std::ranges::replace_if(
-      message, [](unsigned char c) { return c < ' '; }, ' ');
-  fmt::print(stderr, "hemibake: {}\n", message);
-}
-
 void print_warnings(const std::string& what, const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings)
-    fmt::print(stderr, "hemibake: {}: warning: {}\n", what, warning);
+  for (const std::string& warning : warnings) print_message(fmt::format("{}: warning: {}", what, warning));
 }
 
 }  // namespace hemibake

@@ -1,17 +1,16 @@
 #include "transport/links/spill_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 
 #include "core/error.h"
+#include "core/temporary_file.h"
 
 namespace hemibake {
 namespace {
@@ -31,19 +30,11 @@ constexpr uintptr_t kMappedTogether = uintptr_t{64} << 10;
                   folder.string(), what, std::strerror(errno)));
 }
 
-// Opens a temporary file and removes its name.
-int open_nameless(const std::filesystem::path& folder) {
-  std::string name = (folder / ".hemibake-links-XXXXXX").string();
-  const int descriptor = mkostemp(name.data(), O_CLOEXEC);
-  if (descriptor < 0) fail(folder, "make");
-  unlink(name.c_str());
-  return descriptor;
-}
-
 }  // namespace
 
 SpillFile::SpillFile(const std::filesystem::path& folder) : folder_(folder.empty() ? "." : folder) {
-  descriptor_ = open_nameless(folder_);
+  descriptor_ = make_nameless_file(folder_);
+  if (descriptor_ < 0) fail(folder_, "make");
   void* map = mmap(nullptr, kMostBytes, PROT_READ, MAP_SHARED | MAP_NORESERVE, descriptor_, 0);
   if (map == MAP_FAILED) {
     close(descriptor_);
