@@ -16,7 +16,7 @@ endforeach()
 # Header prefix and the paths in src/ (between commas) whose files may include it. GLM, {fmt} and JSON go everywhere.
 set(third_party
   "embree3/:tracers/embree/" "OpenImageIO/:io/" "OpenEXR/:io/" "Imath/:io/" "hdf5:io/" "openssl/:io/" "png.h:io/"
-  "zlib.h:io/" "gdal:io/" "cpl_:io/" "ogr_:io/" "ceres/:fitting/" "Eigen/:fitting/" "tbb/:core/" "boost/:core/" "hwy/:tracers/slice/,transport/"
+  "zlib.h:io/" "gdal:io/" "cpl_:io/" "ogr_:io/" "ceres/:fitting/" "Eigen/:fitting/" "tbb/:core/" "boost/:core/" "hwy/:tracers/slice/,transport/,terrain/"
   "CLI/:cli/options/")
 
 set(errors "")

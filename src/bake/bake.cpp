@@ -128,9 +128,11 @@ PreparedBake prepare_bake(const LoadedMap& map, const BakeSettings& settings, Me
   check_margin(settings.margin, map.surface.width(), map.surface.height());
   prepared.map = &map;
   prepared.settings = settings;
+  resolve_for_holes(map.surface, prepared.settings);
   const bool enforced = settings.limit_memory && limit == MemoryLimit::kEnforced;
   // Twice: before the scene is built, which may be too large already, and with the links a pilot finds.
-  if (enforced) refuse_beyond_memory(settings, plan_planes(map.surface, plan_options(map.surface, settings)));
+  if (enforced)
+    refuse_beyond_memory(settings, plan_planes(map.surface, plan_options(map.surface, prepared.settings)));
   if (settings.target_error) choose_rays_and_bounces(prepared);
   prepared.tracer = make_tracer(map, prepared.settings);
   if (!settings.limit_memory) return prepared;
@@ -162,6 +164,7 @@ BakeResult bake(const PreparedBake& prepared) {
   result.reached = reached_errors(prepared, transport);
   keep_planes(prepared.map->surface, transport, result);
   crop_bake(prepared.settings.margin, result);
+  clear_holes(crop_plane(prepared.map->surface.holes, prepared.settings.margin), result.planes);
   if (prepared.settings.keep_transport) result.transport = std::move(transport);
 
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

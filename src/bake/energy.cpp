@@ -49,6 +49,7 @@ void check_energy(const Bake& bake, const BakeCheckOptions& options, Checks& che
   Extreme balance, total, excess;
   std::vector<Moments> bin_totals(static_cast<size_t>(options.bins));
   for (size_t i = 0; i < bake.total.size(); ++i) {
+    if (is_hole(bake, i)) continue;
     const double sum = static_cast<double>(bake.total[i]) / kPi;
     balance.offer(sum + static_cast<double>(bake.residual[i]), 1, i);
     total.offer(sum, 1, i);
@@ -80,6 +81,7 @@ void check_ranges(const Bake& bake, Checks& checks) {
   Extreme outside;
   for (const auto& plane : bake.irradiance)
     for (size_t i = 0; i < plane.size(); ++i) {
+      if (is_hole(bake, i)) continue;
       const double e = static_cast<double>(plane[i]) / kPi;
       outside.offer(e < 0 ? -e : std::max(0.0, e - 1), 0, i);
     }
@@ -93,6 +95,7 @@ void check_ranges(const Bake& bake, Checks& checks) {
 void check_bounds(const Bake& bake, const BakeCheckOptions& options, Checks& checks) {
   Extreme below, above;
   for (size_t i = 0; i < bake.visible_fraction.size(); ++i) {
+    if (is_hole(bake, i)) continue;
     const double alpha = static_cast<double>(bake.visible_fraction[i]);
     const double cosine = static_cast<double>(bake.irradiance.front()[i]) / kPi;
     below.offer(std::max(0.0, alpha * alpha - cosine), 0, i);
@@ -112,7 +115,7 @@ LinkEnergy measure_link_energy(const Surface& surface, const PatchSet& patches, 
   if (seen.patch_form_factors.empty()) return energy;
   energy.row_sum_error =
       std::max(energy.row_sum_error, worst_row(seen.patch_form_factors, seen.patch_direct_over_pi));
-  if (surface.edge != Edge::kWrap) return energy;
+  if (surface.edge != Edge::kWrap || !surface.holes.empty()) return energy;
 
   const double rays =
       static_cast<double>(seen.counts.rays) / (seen.final_gather.rows + seen.patch_form_factors.rows);
@@ -146,11 +149,14 @@ Checks check_bake(const Bake& bake, const BakeCheckOptions& options) {
   }
   if (options.tiled_with_own_normals && !bake.irradiance.empty() && !bake.normals.empty()) {
     double light = 0;
-    for (size_t i = 0; i < bake.normals.size(); ++i)
+    size_t texels = 0;
+    for (size_t i = 0; i < bake.normals.size(); ++i) {
+      if (is_hole(bake, i)) continue;
+      ++texels;
       light += static_cast<double>(bake.irradiance.front()[i]) / kPi / static_cast<double>(bake.normals[i].z);
-    checks.push_back({"texel light over opening (texel quadrature)",
-                      light / static_cast<double>(bake.normals.size()), 1, kForInformation,
-                      "shrinks with resolution"});
+    }
+    checks.push_back({"texel light over opening (texel quadrature)", light / static_cast<double>(texels), 1,
+                      kForInformation, "shrinks with resolution"});
   }
   return checks;
 }

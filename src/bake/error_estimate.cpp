@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/statistics.h"
 #include "sampling/strata.h"
+#include "surface/facets.h"
 #include "tracers/ray_options.h"
 
 namespace hemibake {
@@ -41,12 +42,21 @@ size_t kind_of(const PatchSet& patches, uint32_t patch) {
 
 double binomial(double share) { return share * (1 - share); }
 
+// Returns whether a node or texel is no surface.
+bool is_open(const Tracer& tracer, uint32_t patch) {
+  const Surface& surface = tracer.surface();
+  if (surface.holes.empty()) return false;
+  if (tracer.patch_set().kind == PatchKind::kTexels) return surface.is_hole(patch);
+  return facet_is_open(surface, facet_node(tracer.patch_set(), patch).facet);
+}
+
 NodeNoise node_noise(const Tracer& again, const LightTransport& seen) {
   Moments all;
   std::array<Moments, kNodeKinds> squares, binomials;
   Row row;
   TracerCounts counts;
   for (const uint32_t node : stratified_sample(again.patch_set().count, kSample, kSampleStream)) {
+    if (is_open(again, node)) continue;
     again.trace_patch(node, false, row, counts);
     const double direct = static_cast<double>(seen.patch_direct()[node]);
     const double variance = (row.direct_over_pi - direct) * (row.direct_over_pi - direct) / 2;
@@ -65,8 +75,9 @@ NodeNoise node_noise(const Tracer& again, const LightTransport& seen) {
 // The sampled texels again, with the same light of the patches; its noise comes on top.
 Noise trace_again(const Tracer& again, const LightTransport& seen, const Bounces& bounces,
                   const NodeNoise& nodes) {
-  const std::vector<uint32_t> texels =
+  std::vector<uint32_t> texels =
       stratified_sample(static_cast<uint32_t>(seen.direct_over_pi.size()), kSample, kSampleStream);
+  std::erase_if(texels, [&](uint32_t texel) { return again.surface().is_hole(texel); });
   struct Difference {
     double ao, direct, first, light_variance;
   };

@@ -35,16 +35,16 @@ Surface make_surface_or_name(Grid<float> heights, const MapSettings& settings,
   }
 }
 
-// Fills the holes of a file, or refuses them.
+// Fills the heights of a file's holes, or refuses them.
 void fill_or_refuse_holes(const MapSettings& settings, HeightFile& file, MapReading& reading) {
   reading.holes = static_cast<size_t>(std::ranges::count(file.holes.values, uint8_t{1}));
   if (reading.holes == 0) return;
   if (settings.holes == Holes::kRefuse) {
     const auto first =
         static_cast<int>(std::ranges::find(file.holes.values, uint8_t{1}) - file.holes.values.begin());
-    throw SettingError(
-        fmt::format("{} texels have no height (first {},{}), expected one in every texel, or {{holes}} fill",
-                    reading.holes, first % file.holes.width, first / file.holes.width));
+    throw SettingError(fmt::format(
+        "{} texels have no height (first {},{}), expected one in every texel, or {{holes}} fill or open",
+        reading.holes, first % file.holes.width, first / file.holes.width));
   }
   fill_holes(file.holes, settings.edge, file.values);
 }
@@ -76,13 +76,19 @@ void make_surface_of(HeightFile file, LoadedMap& map) {
   MapReading& reading = map.reading;
   const std::vector<std::string> outliers = outlier_warnings(file, settings.heights == HeightUnit::kMetres);
   append(reading.warnings, outliers);
+  if (!file.doubt.empty()) reading.warnings.push_back(file.doubt);
   fill_or_refuse_holes(settings, file, reading);
   reading.units = resolve_units(file, settings);
   const bool metres = settings.heights == HeightUnit::kMetres;
   if (file.full_scale == kStepsOfBytes) reading.step_m = *settings.amplitude_m / (metres ? 1 : kStepsOfBytes);
   map.place = file.place;
+  Grid<uint8_t> holes = std::exchange(file.holes, {});
+  const bool open = settings.holes == Holes::kOpen && reading.holes > 0;
+  if (open && !settings.texel_m.empty())
+    throw SettingError(fmt::format(
+        "{{holes}}: texels of {:g} x {:g} m are resampled, which open holes are not, expected fill",
+        reading.units.texel_x_m, reading.units.texel_y_m));
   Grid<float> heights = squared(std::exchange(file.values, {}), reading.units, map);
-  file.holes = {};
   reading.file = std::move(file);
   if (settings.filter.radius > 0) heights = bilateral_filter(heights, settings.filter, settings.edge);
   if (!metres) {
@@ -90,6 +96,7 @@ void make_surface_of(HeightFile file, LoadedMap& map) {
     map.lowest_m = map.amplitude_m * static_cast<double>(*std::ranges::min_element(heights.values));
   }
   map.surface = make_surface_or_name(std::move(heights), settings, outliers);
+  if (open) map.surface.holes = std::move(holes);
   append(reading.warnings, surface_warnings(reading, settings, map.surface));
 }
 

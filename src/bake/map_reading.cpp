@@ -134,7 +134,7 @@ std::vector<std::string> surface_warnings(const MapReading& reading, const MapSe
     return {fmt::format(
         "half of the texels are steeper than {:g} degrees: heights range over {:.4g} m, texels are {:.3g} "
         "m "
-        "wide, expected {{size}} or {{texel-size}} in metres{}",
+        "wide, expected {{size}} or {{texel}} in metres{}",
         kSteepestMedianDegrees, range_m, units.texel_x_m,
         metres ? ", or {heights} unit where values are no metres" : ", or a smaller {amplitude}")};
   return {};

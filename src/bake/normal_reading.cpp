@@ -120,13 +120,6 @@ void resolve_y(const MapSettings& settings, std::optional<NormalY> recorded, std
   }
 }
 
-std::string agreement_text(const SlopeAgreement& agreement) {
-  const auto text = [](const std::optional<double>& value) {
-    return value ? fmt::format("{:.2f}", *value) : "none";
-  };
-  return fmt::format("correlation x {}, y {}", text(agreement.x), text(agreement.y));
-}
-
 bool is_above(const std::optional<double>& value, double limit) { return value && *value > limit; }
 bool is_below(const std::optional<double>& value, double limit) { return value && *value < -limit; }
 
@@ -184,7 +177,7 @@ std::string length_warning(const NormalImage& image, const NormalDecoding& decod
 std::string direction_warning(const NormalReading& reading, const MapSettings& settings,
                               const Surface& surface, const NormalDecoding& decoding) {
   const SlopeAgreement& a = reading.agreement;
-  const std::string text = agreement_text(a);
+  const std::string text = "correlation " + agreement_text(a);
   if (is_below(a.y, kFollows) && !is_below(a.x, kFollows))
     return fmt::format("its y leans against the heights ({}): expected {}", text,
                        reading.y_from == NormalYSource::kFile
@@ -261,6 +254,13 @@ ReadNormals decode_and_compare(const NormalImage& image, const ChannelChoice& ch
 }
 
 }  // namespace
+
+std::string agreement_text(const SlopeAgreement& agreement) {
+  const auto text = [](const std::optional<double>& value) {
+    return value ? fmt::format("{:.2f}", *value) : "none";
+  };
+  return fmt::format("x {}, y {}", text(agreement.x), text(agreement.y));
+}
 
 ReadNormals read_normals(MapSettings& settings, const Surface& surface) {
   const std::filesystem::path& path = settings.normal_map;

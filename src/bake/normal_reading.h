@@ -24,4 +24,7 @@ struct ReadNormals {
 // heights or contradicts what the file records.
 ReadNormals read_normals(MapSettings& settings, const Surface& surface);
 
+// Returns the correlations in x and y: "x 0.98, y none".
+std::string agreement_text(const SlopeAgreement& agreement);
+
 }  // namespace hemibake

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/geo_place.h"
 
 namespace hemibake {
@@ -83,9 +84,15 @@ std::vector<std::string> words_of(const Value& value, const std::string& text) {
 void set_from(const Field& field, const nlohmann::ordered_json& recorded) {
   std::string text = recorded.is_string() ? recorded.get<std::string>() : recorded.dump();
   if (!text.starts_with(field.key_prefix))
-    throw InputError(fmt::format("'{}', expected '{}…'", text, field.key_prefix));
+    throw InputError(fmt::format("'{}', expected '{}…'", excerpt(text), field.key_prefix));
   text.erase(0, field.key_prefix.size());
-  field.value.set(words_of(field.value, text));
+  const Value& value = field.value;
+  const std::vector<std::string> words = words_of(value, text);
+  const auto count = static_cast<int>(words.size());
+  if (value.separated && (count < value.fewest || (value.most >= 0 && count > value.most)))
+    throw InputError(fmt::format("'{}', expected {} to {} values between commas", excerpt(text), value.fewest,
+                                 value.most));
+  value.set(words);
 }
 
 // The file `provenance[path_key]` names, if it is still the one with the hash recorded.
@@ -198,8 +205,16 @@ MapSettings recorded_map_settings(const Provenance& provenance, const std::files
 BakeSettings recorded_bake_settings(const Provenance& provenance, const std::filesystem::path& bake_path) {
   BakeSettings settings;
   read_fields(provenance, bake_path, bake_fields(settings));
-  MapSettings unused;
-  resolve_defaults(unused, settings, [](const std::string&) { return true; });
+  MapSettings map;
+  read_fields(provenance, bake_path, map_fields(map));
+  if (map.normals_from == NormalSource::kMap) map.normal_map = "recorded";
+  resolve_defaults(map, settings, [](const std::string&) { return true; });
+  try {
+    validate(map, settings, [](const std::string&) { return false; });
+  } catch (const SettingError& error) {
+    throw InputError(
+        fmt::format("{}: what it records goes not together: {}", bake_path.string(), error.what()));
+  }
   return settings;
 }
 

@@ -29,7 +29,8 @@ void read_fields(const Provenance& provenance, const std::filesystem::path& path
 // place or is no longer the same file.
 MapSettings recorded_map_settings(const Provenance& provenance, const std::filesystem::path& bake_path);
 
-// Returns how a bake was traced and bounced. Throws InputError where it does not say.
+// Returns how a bake was traced and bounced. Throws InputError where it does not say, or says what no command
+// line may: a value out of its range, or settings that exclude each other.
 BakeSettings recorded_bake_settings(const Provenance& provenance, const std::filesystem::path& bake_path);
 
 }  // namespace hemibake

@@ -99,7 +99,7 @@ void validate_units(const MapSettings& map, const IsGiven& given) {
     if (given(one) && given(other))
       throw SettingError(fmt::format("{{{}}}: is given with {{{}}}, expected one of the two", one, other));
   };
-  exclude("texel-size", "size");
+  exclude("texel", "size");
   exclude("high", "amplitude");
   exclude("low", "amplitude");
   if (map.low_m && !map.high_m)
@@ -112,6 +112,8 @@ void validate_units(const MapSettings& map, const IsGiven& given) {
 
 void resolve_defaults(MapSettings& map, BakeSettings& settings, const IsGiven& given) {
   if (settings.preset == Preset::kMayaux2018) apply_mayaux2018(map, settings, given);
+  settings.tracer_is_default = !settings.tracer;
+  settings.rays_are_default = !settings.rays;
   if (!settings.tracer) {
     const bool asks_for_rays =
         settings.cone_degrees < 180 || settings.directions || settings.rays.value_or(0) > kMaxAzimuths;
@@ -122,6 +124,21 @@ void resolve_defaults(MapSettings& map, BakeSettings& settings, const IsGiven& g
   if (!settings.patch_kind)
     settings.patch_kind = settings.tracer == TracerKind::kMarch ? PatchKind::kTexels : PatchKind::kFacets;
   if (!map.normal_map.empty()) map.normals_from = NormalSource::kMap;
+}
+
+void resolve_for_holes(const Surface& surface, BakeSettings& settings) {
+  if (surface.holes.empty()) return;
+  if (settings.tracer != TracerKind::kEmbree) {
+    if (!settings.tracer_is_default)
+      throw SettingError(
+          fmt::format("{{tracer}}: {} know no open holes, expected embree, or {{holes}} fill with it",
+                      settings.tracer == TracerKind::kMarch ? "marches" : "slices"));
+    settings.tracer = TracerKind::kEmbree;
+    if (settings.rays_are_default) settings.rays = kDefaultRays;
+  }
+  if (settings.target_error)
+    throw SettingError(
+        "{target-error}: is against slices, which know no open holes, expected {rays}, or {holes} fill");
 }
 
 void validate(const MapSettings& map, const BakeSettings& settings, const IsGiven& given) {

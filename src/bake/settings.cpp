@@ -74,8 +74,9 @@ std::vector<Field> file_fields(MapSettings& s) {
            recorded("nodata", "nodata", "Map", number(s.file.no_data, -1e300, 1e300),
                     "stored value of texels without a height; default: as the file says")),
       when([&s] { return s.holes != Holes::kRefuse; },
-           recorded("holes", "holes", "Map", choice(s.holes, {"refuse", "fill"}),
-                    "texels without a height: refused (default), or filled smoothly from their rim")),
+           recorded("holes", "holes", "Map", choice(s.holes, {"refuse", "fill", "open"}),
+                    "texels without a height: refused (default), filled smoothly from their rim, or open: no "
+                    "surface, sky is seen through them (with --tracer embree)")),
   };
 }
 
@@ -89,7 +90,7 @@ std::vector<Field> unit_fields(MapSettings& s) {
                                  "length of the map's longer side, m; default: 1, or as the file says"))),
       with_default(when(
           [&s] { return !s.texel_m.empty(); },
-          shown_as(recorded("texel-size", "texel_m", "Surface", texel,
+          shown_as(recorded("texel", "texel_m", "Surface", texel,
                             "width of a texel, and its height where that is another, m, instead of --size"),
                    "X[,Y]"))),
       with_default(
@@ -211,7 +212,8 @@ std::vector<Field> bake_fields(BakeSettings& s) {
   return {
       recorded("tracer", "tracer", "Tracing", choice(s.tracer, {"embree", "march", "slice"}),
                "how visibility is found: vertical slices (default), rays with Embree (default with --cone, "
-               "--directions or over 65536 --rays, which slices do not have), or the texel march of 2018"),
+               "--directions, over 65536 --rays or open holes, which slices do not have), or the texel march "
+               "of 2018"),
       recorded("rays", "rays", "Tracing", whole(s.rays, 1, kMaxRays),
                "azimuths of slices per texel (default 64), or rays per texel and per patch (default 256)"),
       recorded("cone", "cone_degrees", "Tracing", positive(s.cone_degrees, 180),

@@ -28,8 +28,8 @@ enum class NormalSource { kHeights, kFaces, kMap };
 // Values of a height map: metres, or 0..1 (integers over their range) times the amplitude.
 enum class HeightUnit { kMetres, kUnit };
 
-// Texels without a height: refused, or filled from their rim (surface/holes.h).
-enum class Holes { kRefuse, kFill };
+// Texels without a height: refused, filled from their rim (surface/holes.h), or no surface.
+enum class Holes { kRefuse, kFill, kOpen };
 
 // Rays of a march follow unit normals, or the normal map's as long as they are stored.
 enum class NormalLength { kUnit, kStored };
@@ -91,8 +91,9 @@ struct BakeSettings {
   std::optional<double> memory_gib;  // absent: what the machine has
 
   // Not on the command line.
-  bool trace_form_factors = false;     // although no bounce needs them
-  bool keep_transport = false;         // in the result
+  bool tracer_is_default = false, rays_are_default = false;  // set by resolve_defaults
+  bool trace_form_factors = false;                           // although no bounce needs them
+  bool keep_transport = false;                               // in the result
   bool limit_memory = true;            // plan first, spill or refuse what does not fit; false: just go
   bool estimate_errors = true;         // where there are form factors and a bounce
   std::filesystem::path spill_folder;  // empty: the current one
@@ -114,6 +115,10 @@ using IsGiven = std::function<bool(const std::string& name)>;
 // Fills in what follows from other settings: the preset (where its settings are not given), the tracer, its
 // rays, directions and patches.
 void resolve_defaults(MapSettings& map, BakeSettings& settings, const IsGiven& given);
+
+// Lets rays trace a surface with holes, which no other tracer knows, where the user chose none. Throws
+// SettingError where the settings need one without holes. settings: resolved.
+void resolve_for_holes(const Surface& surface, BakeSettings& settings);
 
 // Throws SettingError (core/error.h) for combinations that make no sense. The settings are resolved.
 void validate(const MapSettings& map, const BakeSettings& settings, const IsGiven& given);

@@ -27,32 +27,38 @@ namespace {
 struct BakeCommandOptions : BakeOptions {
   std::vector<std::string> maps;
   std::filesystem::path output;
-  std::vector<int> texel;
+  std::vector<int> replay;
   bool dry_run = false;
 
-  bool writes() const { return texel.empty() && !dry_run; }
+  bool writes() const { return replay.empty() && !dry_run; }
 };
 
 void check_outputs(const BakeCommandOptions& options) {
+  if (options.output.empty() && !options.map.texel_m.empty())
+    throw InputError(
+        "--texel is the width of a texel in metres, expected -o BAKE.exr with it; --replay X,Y prints what "
+        "one "
+        "texel sees");
   if (options.output.empty()) throw InputError("--output: missing, expected -o BAKE.exr");
-  const std::string extension = lower_case_extension(options.output);
-  if (extension == ".png" || extension == ".tif" || extension == ".tiff")
-    throw InputError(fmt::format("{}: a bake is an .exr, expected one ('hemibake textures' writes {} files)",
-                                 options.output.string(), extension));
-  check_bake_output(options.map, options.output, {".exr"});
+  if (lower_case_extension(options.output) == ".png")
+    throw InputError(fmt::format(
+        "{}: a bake is an .exr, or a .tif for other programs, expected one ('hemibake textures' writes "
+        ".png files)",
+        options.output.string()));
+  check_bake_output(options.map, options.output, {".exr", ".tif", ".tiff"});
   if (!options.links.empty()) check_bake_output(options.map, options.links, {".h5", ".hdf5"});
 }
 
 // Replays a texel or says memory and work, without a bake.
 MapOutcome say_beforehand(const BakeCommandOptions& options, const PreparedBake& prepared) {
-  if (options.texel.empty()) {
+  if (options.replay.empty()) {
     nlohmann::ordered_json json = json_from_plan(prepared.plan);
     json["map"] = json_from_map(*prepared.map);
     json["warnings"] = warnings_of(*prepared.map);
     return {json, describe_map(*prepared.map) + describe_plan(prepared), "", 0};
   }
   const Replay replay = with_file_context(
-      options.map.map, [&] { return replay_texel(prepared, options.texel[0], options.texel[1]); });
+      options.map.map, [&] { return replay_texel(prepared, options.replay[0], options.replay[1]); });
   return {json_from_replay(replay), describe_replay(replay), "", 0};
 }
 
@@ -82,9 +88,10 @@ MapOutcome bake_one(BakeCommandOptions options, Again again, const Invocation& i
 }
 
 int bake_many(const BakeCommandOptions& options, const Invocation& invocation) {
-  refuse_settings_of_one_map(invocation, {"normals", "links", "texel", "dry-run"});
+  refuse_settings_of_one_map(invocation, {"normals", "links", "replay", "dry-run"});
   if (options.output.empty()) throw InputError("--output: missing, expected -o DIR for several maps");
-  if (lower_case_extension(options.output) == ".exr")
+  const std::string extension = lower_case_extension(options.output);
+  if (extension == ".exr" || extension == ".tif" || extension == ".tiff")
     throw InputError(
         fmt::format("--output: {} is one file, expected a folder for several maps", options.output.string()));
   const std::vector<std::filesystem::path> maps = find_maps(options.maps);
@@ -116,10 +123,12 @@ CommandSetup setup_bake() {
   take_several_maps(setup.fields, options->maps);
   append(
       setup.fields,
-      {in_group(shown_as(output_option(options->output, "the bake to write, EXR; for several maps a folder"),
+      {in_group(shown_as(output_option(
+                             options->output,
+                             "the bake to write, EXR, or TIFF for other programs; for several maps a folder"),
                          "BAKE.exr|DIR"),
                 "Output"),
-       in_group(shown_as(option("texel", whole_numbers(options->texel, 2, 0, int{kMaxTexels - 1}),
+       in_group(shown_as(option("replay", whole_numbers(options->replay, 2, 0, int{kMaxTexels - 1}),
                                 "print the rays, hits and links of one texel instead, counted from 0"),
                          "X,Y"),
                 "Output"),

@@ -116,6 +116,7 @@ Provenance wanted_record(const LoadedMap& map, const BakeSettings& settings) {
   Provenance wanted = make_provenance("");
   record_map(map.settings, map.sha256, wanted);
   BakeSettings copy = settings;
+  resolve_for_holes(map.surface, copy);
   record_fields(bake_fields(copy), wanted);
   for (const char* elsewhere : {"command", "input_path", "normals_path"}) wanted.erase(elsewhere);
   if (settings.target_error)

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <system_error>
 
 #include "bake/settings.h"
 #include "cli/command_line.h"
@@ -99,6 +100,10 @@ int run_command_line(int argc, char** argv) {
     return fail(kExitInterrupted, "interrupted, no file was left half written");
   } catch (const std::bad_alloc&) {
     return fail(kExitBadInput, "out of memory, expected less work (see --dry-run and --memory)");
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::resource_unavailable_try_again)
+      return fail(kExitFailedCheck, error.what());
+    return fail(kExitBadInput, "no thread could be started, expected more memory or fewer --threads");
   } catch (const std::exception& error) {
     return fail(kExitFailedCheck, error.what());
   }

@@ -12,6 +12,7 @@
 #include "io/curves_file.h"
 #include "io/file_context.h"
 #include "io/fit_file.h"
+#include "io/json_reader.h"
 #include "io/output_file.h"
 #include "model/check_model.h"
 #include "model/model.h"
@@ -20,25 +21,31 @@ namespace hemibake {
 namespace {
 
 constexpr double kDefaultTolerance = 2e-5;
+constexpr double kMostRays = 1 << 20;
+constexpr double kMostError = 1e30;  // of what a bake measured of itself
 
-template <class Value>
-std::optional<Value> entry(const Provenance& provenance, const char* name) {
+std::optional<JsonReader> entry(const Provenance& provenance, const char* name) {
   if (!provenance.is_object() || !provenance.contains(name)) return std::nullopt;
-  try {
-    return provenance[name].get<Value>();
-  } catch (const nlohmann::json::exception&) {
-    throw InputError(fmt::format("attribute hemibake:{} is {}, expected what 'hemibake bake' writes there",
-                                 name, provenance[name].dump()));
-  }
+  return JsonReader(provenance[name], fmt::format("attribute hemibake:{}", name));
+}
+
+std::string text_entry(const Provenance& provenance, const char* name) {
+  const auto found = entry(provenance, name);
+  return found ? found->text() : "";
+}
+
+std::optional<double> number_entry(const Provenance& provenance, const char* name, double low, double high) {
+  const auto found = entry(provenance, name);
+  return found ? std::optional(found->number(low, high)) : std::nullopt;
 }
 
 // α² ≤ E₀/π ≤ α(2−α) holds exactly for rays of equal solid angle, whose cosines are the midpoint rule; other
 // ray sets know either fraction to N^-3/4.
 double bounds_tolerance(const Provenance& provenance) {
-  const bool exact = entry<std::string>(provenance, "tracer") == "embree" &&
-                     entry<std::string>(provenance, "directions") == "uniform" &&
-                     entry<double>(provenance, "cone_degrees").value_or(180) >= 180;
-  return exact ? 1e-5 : 4 * std::pow(entry<double>(provenance, "rays").value_or(1), -0.75);
+  const bool exact = text_entry(provenance, "tracer") == "embree" &&
+                     text_entry(provenance, "directions") == "uniform" &&
+                     number_entry(provenance, "cone_degrees", 0, 180).value_or(180) >= 180;
+  return exact ? 1e-5 : 4 * std::pow(number_entry(provenance, "rays", 1, kMostRays).value_or(1), -0.75);
 }
 
 void check_numbers(const NamedFit& named, Checks& checks) {
@@ -127,14 +134,14 @@ Checks checks_of_bake(const BakeFile& file, std::optional<double> tolerance) {
   BakeCheckOptions options;
   options.energy_tolerance = tolerance;
   // A bake that was to converge is held to it; twice the tolerance for what comes above it.
-  if (!tolerance && entry<double>(p, "converge"))
-    options.energy_tolerance = 2 * *entry<double>(p, "converge");
+  if (const auto converge = number_entry(p, "converge", 0, 1); converge && !tolerance)
+    options.energy_tolerance = 2 * *converge;
   options.bounds_tolerance = bounds_tolerance(p);
-  if (const auto row_sum_error = entry<double>(p, "row_sum_error"))
-    options.link_energy = LinkEnergy{*row_sum_error, entry<double>(p, "light_over_opening"),
-                                     entry<double>(p, "light_over_opening_stderr").value_or(0)};
-  options.tiled_with_own_normals = entry<std::string>(p, "edge") == "wrap" &&
-                                   entry<std::string>(p, "normals").value_or("").starts_with("from ");
+  if (const auto row_sum_error = number_entry(p, "row_sum_error", 0, kMostError))
+    options.link_energy = LinkEnergy{*row_sum_error, number_entry(p, "light_over_opening", 0, kMostError),
+                                     number_entry(p, "light_over_opening_stderr", 0, kMostError).value_or(0)};
+  options.tiled_with_own_normals =
+      text_entry(p, "edge") == "wrap" && text_entry(p, "normals").starts_with("from ");
   return check_bake(file.bake, options);
 }
 
@@ -151,6 +158,8 @@ Checks checks_of_file(const std::filesystem::path& path, std::optional<double> t
     return check_curves(read_curves(path), tolerance.value_or(kDefaultTolerance), tolerance.has_value());
   if (extension == ".json") {
     const FitFile file = read_fits(path);
+    if (file.fits.empty() && file.escapes.empty())
+      throw InputError(path.string() + ": holds no fits, expected some: nothing is checked");
     return with_file_context(path,
                              [&] { return checks_of_fit(file, tolerance.value_or(kDefaultTolerance)); });
   }

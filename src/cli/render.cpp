@@ -91,6 +91,7 @@ std::string describe(const RenderOptions& options, const nlohmann::ordered_json&
 int run_render(RenderOptions& options, const Invocation& invocation) {
   resolve(options);
   BakeFile file = read_bake(options.bake);
+  show_holes_as_open_ground(file.bake);
   const Provenance provenance = make_provenance(invocation.context.command, options.bake);
   const ResultFolder folder(options.folder);
   check_output_path(options.folder / kRecord);

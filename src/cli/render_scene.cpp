@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "bake/crop.h"
 #include "bake/record.h"
 #include "bake/retrace.h"
 #include "core/context.h"
@@ -155,11 +156,24 @@ RenderedScene shade_scene(const RenderOptions& options, BakeFile file, const Con
     recorded = {recorded_map_settings(file.provenance, options.bake),
                 recorded_bake_settings(file.provenance, options.bake)};
     scene.surface = load_map(recorded.map).surface;
+    const int margin = recorded.bake.margin;
+    if (margin > 0) {
+      if (runs_again)
+        throw InputError(
+            fmt::format("{}: is cropped by {} texels, expected a bake of the whole map to light again",
+                        options.bake.string(), margin));
+      with_file_context(options.bake,
+                        [&] { check_margin(margin, scene.surface->width(), scene.surface->height()); });
+      scene.surface->heights_m = crop_plane(scene.surface->heights_m, margin);
+      scene.surface->normals = crop_plane(scene.surface->normals, margin);
+      scene.is_cropped = true;
+    }
     if (scene.surface->width() != bake.width || scene.surface->height() != bake.height)
       throw InputError(options.bake.string() + ": its map has another size, expected the bake's");
   } catch (const InputError& error) {
     if (runs_again) throw;
     scene.surface.reset();
+    scene.is_cropped = false;
     result.no_map = error.what();
   }
 

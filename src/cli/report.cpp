@@ -32,7 +32,8 @@ int run_report(ReportOptions options, const Invocation& invocation) {
   const ReportFolder folder = read_report_folder(options.folder);
   check_output_path(options.output, {".html", ".htm"});
 
-  const Bake bake = folder.bake ? folder.bake->bake : Bake{};
+  Bake bake = folder.bake ? folder.bake->bake : Bake{};
+  show_holes_as_open_ground(bake);
   const PackedPlanes planes =
       with_file_context(options.folder / "bake.exr", [&] { return pack_planes(bake, options.image_size); });
   const std::vector<ReportModel> models = with_file_context(

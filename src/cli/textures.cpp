@@ -87,6 +87,10 @@ Provenance record_of_bake(const fs::path& bake, const Provenance& of_bake, std::
 // Makes the planes of terrain of a map, cropped as its bake.
 TerrainPlanes terrain_of(const Surface& surface, const fs::path& map, const TextureSettings& settings,
                          int margin) {
+  if (!surface.holes.empty())
+    throw InputError(
+        map.string() +
+        ": has open holes, which horizons do not know, expected --holes fill for maps of terrain");
   const double longer_side_m = surface.texel_size_m * std::max(surface.width(), surface.height());
   if (longer_side_m > kCurvedMapM && !settings.curvature)
     print_warnings(map.string(),

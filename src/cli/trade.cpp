@@ -41,7 +41,13 @@ int run_trade(TradeOptions& options, const Invocation& invocation) {
   study.provenance = make_provenance(invocation.context.command);
   record_map(options.map, hash_files(options.map), study.provenance);
   // Runs in the child: this process must not start threads.
-  study.load = [&options] { return load_map(options.map).surface; };
+  study.load = [&options] {
+    Surface surface = load_map(options.map).surface;
+    if (!surface.holes.empty())
+      throw InputError(options.map.map.string() +
+                       ": has open holes, which only rays know, expected --holes fill for a study");
+    return surface;
+  };
   study.reference.effort = effort_of(options.effort);
   study.reference.memory_bytes = static_cast<size_t>(options.memory_gib * 1024 * 1024 * 1024);
   const Study result = run_study(study);

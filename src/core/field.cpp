@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/printable.h"
 
 namespace hemibake {
 namespace {
@@ -45,7 +46,7 @@ struct Range {
   T read(const std::string& text) const {
     const std::optional<T> value = number_from<T>(text);
     if (!value || *value < low || *value > high || (above_low && *value == low))
-      throw InputError(fmt::format("'{}', expected {}", text, expectation()));
+      throw InputError(fmt::format("'{}', expected {}", excerpt(text), expectation()));
     return *value;
   }
 };
@@ -101,7 +102,7 @@ Value kept_text(T& variable) {
 size_t index_of(const std::string& word, const Words& names) {
   const auto found = std::ranges::find(names, word);
   if (found == names.end())
-    throw InputError(fmt::format("'{}' is not in {{{}}}", word, fmt::join(names, ",")));
+    throw InputError(fmt::format("'{}' is not in {{{}}}", excerpt(word), fmt::join(names, ",")));
   return static_cast<size_t>(found - names.begin());
 }
 
@@ -128,7 +129,9 @@ Value flag(bool& variable) {
   value.kind = Value::Kind::kFlag;
   value.fewest = value.most = 0;
   value.get = [&variable] { return std::optional<std::string>(variable ? "true" : "false"); };
-  value.set = [&variable](const Words& words) { variable = words.empty() || words[0] == "true"; };
+  value.set = [&variable](const Words& words) {
+    variable = words.empty() || index_of(words[0], {"false", "true"}) == 1;
+  };
   return value;
 }
 

@@ -22,6 +22,7 @@ struct Moments {
   double stddev() const;
 };
 
+// Returns the mean; of floats that of the values that are not NaN, which holes of a bake have.
 double mean(std::span<const float> values);
 double mean(std::span<const double> values);
 

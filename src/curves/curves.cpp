@@ -7,6 +7,7 @@
 
 #include "core/constants.h"
 #include "core/error.h"
+#include "core/portable_math.h"
 #include "core/statistics.h"
 #include "transport/series.h"
 
@@ -38,7 +39,7 @@ void check_irradiance(const Bake& bake, CurveIndex index) {
     const Grid<float>& irradiance = bake.irradiance[b];
     expect_equal(irradiance.size(), texels, "texels of an irradiance plane");
     for (size_t i = 0; i < irradiance.size(); ++i) {
-      if (irradiance[i] >= 0 && std::isfinite(irradiance[i])) continue;
+      if ((irradiance[i] >= 0 && std::isfinite(irradiance[i])) || is_hole(bake, i)) continue;
       throw InputError(fmt::format("irradiance.{:02} at texel {} is {}, expected a finite number from 0", b,
                                    texel_name(irradiance, i), irradiance[i]));
     }
@@ -59,6 +60,7 @@ Grid<float> index_plane(const Bake& bake, CurveIndex index) {
   expect_equal(plane.size(), bake.irradiance[0].size(), "texels of an irradiance plane");
   const float highest = is_ao ? 1 + kAoRounding : 1 + kConeExcess;
   for (size_t i = 0; i < plane.size(); ++i) {
+    if (is_hole(bake, i)) continue;
     if (!(plane[i] >= -kAoRounding && plane[i] <= highest))
       throw InputError(fmt::format("{} at texel {} is {}, expected 0 to 1", to_string(index),
                                    texel_name(plane, i), plane[i]));
@@ -99,9 +101,8 @@ double total_over_pi(const CurveBin& bin, double albedo) {
   const double last = mean(count - 1);
   const double tail = series_tail(mean(count - 2), last, 1, kPi - sum_bounces(count, mean, 1));
   const double ratio = tail / (tail + last);
-  if (tail > 0)
-    total +=
-        series_tail(std::pow(albedo, count - 2) * last / ratio, std::pow(albedo, count - 1) * last, albedo);
+  const double before = PortableMath<double>::pow(albedo, static_cast<double>(count - 2));
+  if (tail > 0) total += series_tail(before * last / ratio, before * albedo * last, albedo);
   return total / kPi;
 }
 
@@ -110,6 +111,7 @@ Curves make_curves(const Bake& bake, int bins, CurveIndex index) {
   std::vector<size_t> bin_of_texel(plane.size());
   std::vector<Moments> index_of_bin(static_cast<size_t>(bins));
   for (size_t i = 0; i < plane.size(); ++i) {
+    if (is_hole(bake, i)) continue;
     const int bin = static_cast<int>(std::floor(bins * static_cast<double>(plane[i])));
     bin_of_texel[i] = static_cast<size_t>(std::min(bin, bins - 1));
     index_of_bin[bin_of_texel[i]].add(plane[i]);
@@ -129,7 +131,8 @@ Curves make_curves(const Bake& bake, int bins, CurveIndex index) {
   }
   for (size_t b = 0; b < bake.irradiance.size(); ++b) {
     std::vector<Moments> moments(curves.bins.size());
-    for (size_t i = 0; i < plane.size(); ++i) moments[bin_of_texel[i]].add(bake.irradiance[b][i]);
+    for (size_t i = 0; i < plane.size(); ++i)
+      if (!is_hole(bake, i)) moments[bin_of_texel[i]].add(bake.irradiance[b][i]);
     for (size_t j = 0; j < curves.bins.size(); ++j) {
       curves.bins[j].bounces[b] = {moments[j].mean, moments[j].stddev()};
     }

@@ -78,19 +78,19 @@ Prediction fit_escape(const Curves& curves, DirectModel direct, const std::vecto
   };
 }
 
+template <class T>
+T power(double base, const T& exponent) {
+  return PortableMath<T>::pow(base, exponent);
+}
+
 Prediction with_power(const Curves& curves, DirectModel direct) {
-  return fit_escape<1>(curves, direct, {{"n", 0.02, 5}}, {{0.3}, {1.0}}, [](const auto* p, const Direct& at) {
-    using std::pow;
-    return pow(at.factor, p[0]);
-  });
+  return fit_escape<1>(curves, direct, {{"n", 0.02, 5}}, {{0.3}, {1.0}},
+                       [](const auto* p, const Direct& at) { return power(at.factor, p[0]); });
 }
 
 Prediction with_scaled_power(const Curves& curves, DirectModel direct) {
   return fit_escape<2>(curves, direct, {{"q", 0.001, 1}, {"n", 0.02, 5}}, {{0.5, 0.3}, {0.8, 1.0}},
-                       [](const auto* p, const Direct& at) {
-                         using std::pow;
-                         return p[0] * pow(at.factor, p[1]);
-                       });
+                       [](const auto* p, const Direct& at) { return p[0] * power(at.factor, p[1]); });
 }
 
 Prediction with_straight(const Curves& curves, DirectModel direct) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/portable_math.h"
 #include "fitting/evaluation.h"
 
 namespace hemibake {
@@ -88,7 +89,7 @@ std::optional<double> weighted_aic(const Evaluation& at, std::span<const CurvePo
                                    double observations) {
   const double count = static_cast<double>(points.size());
   double log_weights = 0;
-  for (const CurvePoint& point : points) log_weights += std::log(point.weight);
+  for (const CurvePoint& point : points) log_weights += PortableMath<double>::log(point.weight);
   std::optional<double> aic = small_sample_aic(at.residuals.squaredNorm() / count, observations,
                                                static_cast<int>(at.jacobian.cols()));
   if (aic) *aic -= log_weights * observations / count;
@@ -100,7 +101,8 @@ std::optional<double> weighted_aic(const Evaluation& at, std::span<const CurvePo
 std::optional<double> small_sample_aic(double mean_square, double observations, int parameters) {
   const double k = parameters + 1;
   if (observations - k - 1 <= 0 || mean_square <= 0) return std::nullopt;
-  return observations * std::log(mean_square) + 2 * k + 2 * k * (k + 1) / (observations - k - 1);
+  return observations * PortableMath<double>::log(mean_square) + 2 * k +
+         2 * k * (k + 1) / (observations - k - 1);
 }
 
 Fit minimize(const Formula& formula, std::span<const CurvePoint> points,

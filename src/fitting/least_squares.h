@@ -13,6 +13,7 @@
 
 #include "fitting/bounded_minimum.h"
 #include "fitting/fit.h"
+#include "fitting/portable_jet.h"
 
 namespace hemibake {
 

@@ -3,11 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include "core/constants.h"
 #include "core/error.h"
+#include "io/geo_place.h"
+#include "io/geo_write.h"
 #include "io/image_io.h"
 #include "io/output_file.h"
 
@@ -15,6 +20,11 @@ namespace hemibake {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Light above all there is that rounding, and what `check` is to judge, may make.
+constexpr double kRounding = 1e-3;
+constexpr double kMostGainedLight = 1e6;
+constexpr double kUnitLength = 1e-3;
 
 std::string irradiance_channel(size_t bounce) { return fmt::format("irradiance.{:02}", bounce); }
 
@@ -106,24 +116,109 @@ double read_bounce_albedo(const fs::path& path, const Provenance& provenance) {
                   path.string()));
 }
 
+struct Range {
+  double low, high;
+};
+
+void check_plane(const fs::path& path, const std::string& channel, const Grid<float>& plane, Range range) {
+  for (size_t i = 0; i < plane.size(); ++i) {
+    const double value = static_cast<double>(plane[i]);
+    if (std::isnan(value) || (value >= range.low && value <= range.high)) continue;
+    const auto width = static_cast<size_t>(plane.width);
+    throw InputError(fmt::format("{}: channel {} is {} at texel {},{}, expected {} to {:.7g}", path.string(),
+                                 channel, plane[i], i % width, i / width, range.low == 0 ? 0 : range.low,
+                                 range.high));
+  }
+}
+
+// may_vanish: whether vectors of length 0 stand for no direction.
+void check_vectors(const fs::path& path, const char* channel, const Grid<glm::vec3>& plane, bool may_vanish) {
+  for (size_t i = 0; i < plane.size(); ++i) {
+    const double length = glm::length(glm::dvec3(plane[i]));
+    if (std::isnan(length) || std::abs(length - 1) <= kUnitLength || (may_vanish && length == 0)) continue;
+    const auto width = static_cast<size_t>(plane.width);
+    throw InputError(fmt::format("{}: channel {} has length {} at texel {},{}, expected 1", path.string(),
+                                 channel, length, i % width, i / width));
+  }
+}
+
+// Returns whether light may come out above 1: published weights, stored lengths of normals, and cones less
+// than the hemisphere do not keep energy.
+bool may_gain_light(const Provenance& provenance) {
+  const auto says = [&](const char* name, const char* value) {
+    const auto found = provenance.find(name);
+    return found != provenance.end() && *found == value;
+  };
+  const auto cone = provenance.find("cone_degrees");
+  return says("normalize", "published") || says("normal_length", "stored") ||
+         (cone != provenance.end() && cone->is_number() && cone->get<double>() < 180);
+}
+
+// What is not a number is an open hole, or was refused before.
+void check_ranges(const fs::path& path, const BakeFile& file) {
+  const Bake& bake = file.bake;
+  const double most = may_gain_light(file.provenance) ? kMostGainedLight : 1 + kRounding;
+  const Range light{-kRounding, most}, irradiance{-kRounding * kPi, most * kPi};
+  check_plane(path, "ao", bake.visible_fraction, {-kRounding, 1 + kRounding});
+  check_plane(path, "visibility", bake.visibility, light);
+  for (size_t b = 0; b < bake.irradiance.size(); ++b)
+    check_plane(path, irradiance_channel(b), bake.irradiance[b], irradiance);
+  check_plane(path, "total", bake.total, irradiance);
+  check_plane(path, "residual", bake.residual, {-most, most});
+  check_plane(path, "bounce", bake.bounce, light);
+  check_vectors(path, "normal", bake.normals, false);
+  check_vectors(path, "bent", bake.bent_normals, true);
+}
+
+bool is_tiff(const std::string& extension) { return extension == ".tif" || extension == ".tiff"; }
+
+// Writes the planes as bands of a TIFF. Open holes are NoData.
+void write_bands(const fs::path& path, const Bake& bake, const Provenance& provenance) {
+  const std::vector<Plane> planes = planes_of<const float>(bake);
+  const GeoPlace place = recorded_place(provenance).value_or(GeoPlace{});
+  OutputFile file(path);
+  write_geo_tiff(file, bake.width, bake.height, planes, {place, holes_of(bake)}, provenance);
+  file.finish();
+  file.commit();
+}
+
+// Throws InputError where a texel has no value in one plane, but one in another.
+void check_holes(const fs::path& path, Bake& bake) {
+  for (const BasicPlane<float>& plane : planes_of<float>(bake))
+    for (size_t i = 0; i < static_cast<size_t>(bake.width) * static_cast<size_t>(bake.height); ++i)
+      if (std::isnan(plane.first[i * plane.stride]) && !is_hole(bake, i))
+        throw InputError(fmt::format(
+            "{}: channel {} is nan at texel {},{}, expected a number, or nan in all channels", path.string(),
+            plane.channel, i % static_cast<size_t>(bake.width), i / static_cast<size_t>(bake.width)));
+}
+
 }  // namespace
 
 void write_bake(const fs::path& path, const Bake& bake, const Provenance& provenance) {
   check_sizes(bake);
-  if (lower_case_extension(path) != ".exr")
-    throw InputError(fmt::format("{}: a bake cannot be written as '{}', expected .exr", path.string(),
+  const std::string extension = lower_case_extension(path);
+  if (is_tiff(extension)) return write_bands(path, bake, provenance);
+  if (extension != ".exr")
+    throw InputError(fmt::format("{}: a bake cannot be written as '{}', expected .exr or .tif", path.string(),
                                  path.extension().string()));
   write_image(path, bake.width, bake.height, planes_of<const float>(bake), provenance);
 }
 
 BakeFile read_bake(const fs::path& path) {
+  if (is_tiff(lower_case_extension(path)))
+    throw InputError(
+        fmt::format("{}: bakes are read from EXR, expected the .exr of `hemibake bake`", path.string()));
   const ImageHeader header = read_image_header(path);
   if (!header.provenance.is_object())
     throw InputError(
         fmt::format("{}: has no hemibake attributes, expected a file of `hemibake bake`", path.string()));
   BakeFile file{make_room(path, header), header.provenance};
   if (!file.bake.bounce.empty()) file.bake.bounce_albedo = read_bounce_albedo(path, header.provenance);
-  read_planes(path, header.width, header.height, planes_of<float>(file.bake));
+  const bool open = header.provenance.value("holes", "") == "open";
+  read_planes(path, header.width, header.height, planes_of<float>(file.bake),
+              open ? MissingValues::kNaN : MissingValues::kRefused);
+  if (open) check_holes(path, file.bake);
+  check_ranges(path, file);
   return file;
 }
 

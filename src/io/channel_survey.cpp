@@ -1,5 +1,7 @@
 #include "io/channel_survey.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,6 +15,10 @@ constexpr double kMostLengthError = 0.12, kMostLean = 0.25, kLeastUp = 0.3;
 constexpr double kLeastCorrelation = 0.985, kMostNoise = 0.02;
 // Red of a Terrarium tile: 127 is the sea's floor to −256 m, 164 is 9216 m. Of a Mapbox tile: 4 is 16 km.
 constexpr double kTerrariumLow = 120, kTerrariumHigh = 164, kMapboxHigh = 4;
+
+// Share of texels where alpha is 0 or 1 from which it is a mask; of vectors longer than 1 below which two
+// channels are x and y; x² + y² that rounding and compression do not reach.
+constexpr double kMaskShare = 0.5, kMostBeyondUnit = 0.001, kBeyondUnit = 1.08;
 
 double length(double x, double y, double z) { return std::sqrt(x * x + y * y + z * z); }
 
@@ -41,6 +47,24 @@ void ChannelSurvey::add(float r, float g, float b, bool begins_row) {
     green_blue_.add(stored[1] - last_[1], stored[2] - last_[2]);
   }
   last_ = stored;
+}
+
+void ChannelSurvey::add_alpha(float green, float alpha) {
+  if (!std::isfinite(green) || !std::isfinite(alpha)) return;
+  const double y = 2 * static_cast<double>(green) - 1, x = 2 * static_cast<double>(alpha) - 1;
+  if (alpha_count_++ == 0) first_alpha_ = x;
+  alpha_varies_ = alpha_varies_ || x != first_alpha_;
+  masked_ += std::abs(x) == 1;
+  beyond_unit_ += x * x + y * y > kBeyondUnit;
+  alpha_sum_ += x;
+  green_sum_ += y;
+}
+
+bool ChannelSurvey::is_alpha_normal_map() const {
+  const auto n = static_cast<double>(alpha_count_);
+  if (!alpha_varies_ || static_cast<double>(masked_) > kMaskShare * n) return false;
+  return std::abs(alpha_sum_) < kMostLean * n && std::abs(green_sum_) < kMostLean * n &&
+         static_cast<double>(beyond_unit_) <= kMostBeyondUnit * n;
 }
 
 double ChannelSurvey::deviation(size_t channel) const {
@@ -91,8 +115,48 @@ std::string ChannelSurvey::split_objection() const {
   return begin + (upper ? "rg16, terrarium or mapbox" : "terrarium or mapbox") + end;
 }
 
+// Says which split heights would have the constant red and blue; empty where none would.
+std::string ChannelSurvey::constant_split_doubt() const {
+  if (!is_8_bit_) return "";
+  const long red = std::lround(255 * first_[0]), blue = std::lround(255 * first_[2]);
+  if (static_cast<double>(red) >= kTerrariumLow && static_cast<double>(red) <= kTerrariumHigh)
+    return blue == 0 ? "{encoding} terrarium or rg16" : "{encoding} terrarium";
+  if (red > 0 && static_cast<double>(red) <= kMapboxHigh)
+    return blue == 0 ? "{encoding} mapbox or rg16" : "{encoding} mapbox";
+  return blue == 0 ? "{encoding} rg16" : "{encoding}";
+}
+
+std::string ChannelSurvey::doubt() const {
+  if (count_ < 2 || !varies(1)) return "";
+  constexpr const char* kNormals =
+      "{normals} with {normal-channels} A,G where it is a normal map (x in alpha, y in green: DXT5nm)";
+  const bool is_grey = !is_green_alone() && !differs_from_green(0) && !differs_from_green(2);
+  if (is_grey && is_alpha_normal_map())
+    return fmt::format(
+        "alpha varies about the middle as green does: expected {}, {{channel}} G where green is "
+        "the height",
+        kNormals);
+  const bool is_plain = first_[0] == 0 && first_[2] == 0;
+  if (!is_green_alone() || (is_plain && !alpha_varies_)) return "";
+  if (alpha_varies_ && static_cast<double>(masked_) <= kMaskShare * static_cast<double>(alpha_count_))
+    return fmt::format(
+        "only green and alpha vary: expected {{channel}} G or A to say which is the height, or {}", kNormals);
+  if (is_plain) return "";
+  const std::string split = constant_split_doubt();
+  const double scale = is_8_bit_ ? 255 : 1;
+  return fmt::format(
+      "only green varies, red is {:g} and blue {:g} everywhere, and is taken as the height: expected "
+      "{{channel}} G "
+      "if it is, {}or {{normals}} where it is a normal map",
+      scale * first_[0], scale * first_[2],
+      split.empty() ? "" : split + " where heights are split over channels, ");
+}
+
 std::string ChannelSurvey::objection() const {
   if (count_ < 2) return "";
+  if (is_green_alone() && is_alpha_normal_map())
+    return "looks like a normal map (x in alpha, y in green: DXT5nm), expected heights; --channel names the "
+           "channel that holds them, --normals with --normal-channels A,G takes a normal map";
   if (is_normal_map())
     return "looks like a normal map (vectors of length 1), expected heights; --channel names the channel "
            "that "

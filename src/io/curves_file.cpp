@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <unordered_map>
 
 #include "core/error.h"
 
@@ -14,15 +15,18 @@ constexpr double kEqualEdges = 1e-9;  // edges are written in full: forgives rou
 // Cells of one table by name; errors name file and line.
 class CellReader {
  public:
-  CellReader(const Table& table, std::string path) : table_(table), path_(std::move(path)) {}
+  CellReader(const Table& table, std::string path) : table_(table), path_(std::move(path)) {
+    for (size_t i = 0; i < table.columns.size(); ++i) columns_.emplace(table.columns[i], i);
+  }
 
-  bool has_column(const std::string& name) const { return find_column(table_, name).has_value(); }
+  bool has_column(const std::string& name) const { return columns_.contains(name); }
 
   // Returns the cell; fails where it is missing or outside lowest..highest.
   double number(size_t row, const std::string& column, double lowest, double highest = HUGE_VAL) const {
-    const std::optional<size_t> index = find_column(table_, column);
-    if (!index) throw InputError(fmt::format("{}: no column {}, expected one", path_, column));
-    const std::optional<double> cell = table_.rows[row][*index];
+    const auto index = columns_.find(column);
+    if (index == columns_.end())
+      throw InputError(fmt::format("{}: no column {}, expected one", path_, column));
+    const std::optional<double> cell = table_.rows[row][index->second];
     if (!cell) fail(row, fmt::format("{} is empty, expected a number", column));
     if (*cell < lowest || *cell > highest) {
       fail(row, std::isfinite(highest)
@@ -39,6 +43,7 @@ class CellReader {
  private:
   const Table& table_;
   std::string path_;
+  std::unordered_map<std::string, size_t> columns_;
 };
 
 std::string mean_column(int bounce) { return fmt::format("E{:02}_mean", bounce); }

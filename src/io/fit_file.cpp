@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/printable.h"
 #include "core/version.h"
+#include "io/json_reader.h"
 #include "io/table_io.h"
 
 namespace hemibake {
@@ -74,40 +76,53 @@ void add_comparison(const MapComparison& comparison, Json& json) {
     json["held_out"]["rms"][comparison.models[m]] = json_or_null(comparison.held_out_rms[m]);
 }
 
-std::optional<double> number_or_null(const Json& json) {
-  return json.is_null() ? std::nullopt : std::optional(json.get<double>());
+// Returns `from_string` of a text; its error names the place.
+template <class FromString>
+auto with_place(const JsonReader& json, FromString from_string) {
+  try {
+    return from_string(json.text());
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", json.place(), error.what()));
+  }
 }
 
-// Throws Json::exception for what is missing or of another type.
-Fit fit_from_json(const Json& json) {
+std::vector<double> covariance_from(const JsonReader& json, size_t count) {
+  std::vector<double> covariance;
+  const std::vector<JsonReader> rows = json.elements();
+  if (rows.size() != count) json.refuse(fmt::format("a row for each of {} parameters", count));
+  for (const JsonReader& row : rows) {
+    const std::vector<JsonReader> values = row.elements();
+    if (values.size() != count) row.refuse(fmt::format("a number for each of {} parameters", count));
+    for (const JsonReader& value : values) covariance.push_back(value.number());
+  }
+  return covariance;
+}
+
+Fit fit_from_json(const JsonReader& json) {
   Fit fit;
-  fit.model = json.at("model").get<std::string>();
-  fit.formula = json.at("formula").get<std::string>();
-  for (const auto& [name, parameter] : json.at("parameters").items()) {
-    fit.parameters.push_back({name, parameter.at("value").get<double>(),
-                              number_or_null(parameter.at("stderr")), parameter.value("on_bound", false)});
+  fit.model = json.at("model").text();
+  fit.formula = json.at("formula").text();
+  for (const auto& [name, parameter] : json.at("parameters").members()) {
+    const std::optional<JsonReader> on_bound = parameter.find("on_bound");
+    fit.parameters.push_back({name, parameter.at("value").number(), parameter.at("stderr").number_or_null(0),
+                              on_bound && on_bound->flag()});
   }
-  for (const Json& row : json.at("covariance")) {
-    for (const Json& value : row) fit.covariance.push_back(value.get<double>());
-  }
-  fit.rms = json.at("rms").get<double>();
-  fit.max_error = json.at("max_error").get<double>();
-  fit.points = json.at("points").get<int>();
-  fit.aicc = number_or_null(json.at("aicc"));
-  fit.abscissa = abscissa_from_string(json.at("abscissa").get<std::string>());
-  fit.weights = weights_from_string(json.at("weights").get<std::string>());
+  fit.covariance = covariance_from(json.at("covariance"), fit.parameters.size());
+  fit.rms = json.at("rms").number(0);
+  fit.max_error = json.at("max_error").number(0);
+  fit.points = json.at("points").whole<int>();
+  fit.aicc = json.at("aicc").number_or_null();
+  fit.abscissa = with_place(json.at("abscissa"), abscissa_from_string);
+  fit.weights = with_place(json.at("weights"), weights_from_string);
   return fit;
 }
 
-// Throws Json::exception for what is missing or of another type, InputError for shares outside 0..1.
-std::vector<MapEscape> escapes_from_json(const Json& maps) {
+std::vector<MapEscape> escapes_from_json(const JsonReader& maps) {
   std::vector<MapEscape> escapes;
-  for (const Json& map : maps) {
-    const MapEscape escape{map.at("map").get<std::string>(), number_or_null(map.at("mean_escape"))};
-    if (escape.mean_escape && !(*escape.mean_escape >= 0 && *escape.mean_escape <= 1))
-      throw InputError(
-          fmt::format("mean_escape of {} is {}, expected 0 to 1", escape.map, *escape.mean_escape));
-    escapes.push_back(escape);
+  for (const JsonReader& map : maps.elements()) {
+    MapEscape& escape = escapes.emplace_back(MapEscape{map.at("map").text(), std::nullopt});
+    const JsonReader mean = map.at("mean_escape");
+    if (!mean.is_null()) escape.mean_escape = mean.number(0, 1);
   }
   return escapes;
 }
@@ -123,22 +138,15 @@ Json json_from_fits(const FitFile& file) {
 }
 
 FitFile fits_from_json(const Json& json, const std::filesystem::path& path) {
-  if (!json.is_object()) throw InputError(fmt::format("{}: not a JSON object, expected fits", path.string()));
   FitFile file;
-  for (const auto& [name, value] : json.items()) {
-    if (name == "provenance") file.provenance = value;
-    if (name == "provenance" || name == "held_out") continue;
-    try {
-      if (name == "maps")
-        file.escapes = escapes_from_json(value);
-      else
-        file.fits.push_back({name, fit_from_json(value)});
-    } catch (const Json::exception& error) {
-      const std::string_view what = error.what();  // "[json.exception.…] reason"
-      throw InputError(fmt::format("{}: {}: {}, expected a fit as 'hemibake fit' writes it", path.string(),
-                                   name, what.substr(what.find("] ") + 2)));
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}: {}", path.string(), name, error.what()));
+  for (const auto& [name, value] : JsonReader(json, path.string()).members()) {
+    if (name == "provenance") {
+      check_read_provenance(value);
+      file.provenance = json["provenance"];
+    } else if (name == "maps") {
+      file.escapes = escapes_from_json(value);
+    } else if (name != "held_out") {
+      file.fits.push_back({name, fit_from_json(value)});
     }
   }
   return file;
@@ -152,6 +160,7 @@ std::vector<std::string> model_origin(const FitFile& file, ModelKind kind) {
   if (file.provenance.contains("input") && file.provenance["input"].is_string())
     lines.push_back(fmt::format(
         "input: {}", std::filesystem::path(file.provenance["input"].get<std::string>()).filename().string()));
+  for (std::string& line : lines) line = printable_line(line);
   return lines;
 }
 

@@ -26,7 +26,7 @@ struct FitFile {
 
 nlohmann::ordered_json json_from_fits(const FitFile& file);
 
-// Throws InputError "FILE: NAME: …, expected …"; NAME is a fit or maps. path: for errors only.
+// Throws InputError "FILE: F0/points is …, expected …". path: for errors only.
 FitFile fits_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& path);
 
 // Returns lines for the head of a model's shader text: version, formulas with their constants, name of the

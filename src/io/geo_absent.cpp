@@ -19,10 +19,11 @@ std::optional<HeightFile> read_geo_file(const std::filesystem::path& path, const
 }
 
 void write_geo_tiff(OutputFile& file, int, int, std::span<const Plane>, const GeoTag&, const Provenance&) {
-  throw InputError(fmt::format(
-      "{}: the map has a place on the earth, which this build cannot write, expected one with GDAL (install "
-      "libgdal-dev and build again), or another format",
-      file.path().string()));
+  throw InputError(
+      fmt::format("{}: is a GeoTIFF, which this build cannot write, expected one with GDAL (install "
+                  "libgdal-dev and build again), "
+                  "or another format",
+                  file.path().string()));
 }
 
 }  // namespace hemibake

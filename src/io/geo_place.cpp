@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/byte_reader.h"
 #include "io/output_file.h"
 
@@ -49,8 +51,8 @@ bool has_geo_tags(const fs::path& path) {
 double number_in(std::string_view text, const char* name) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size())
-    throw InputError(fmt::format("attribute hemibake:{}: '{}', expected a number", name, text));
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+    throw InputError(fmt::format("attribute hemibake:{}: '{}', expected a number", name, excerpt(text)));
   return value;
 }
 

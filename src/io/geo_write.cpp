@@ -68,7 +68,7 @@ class GeoWriter {
  private:
   void describe(GDALDatasetH dataset, const Provenance& provenance) const {
     std::array<double, 6> transform = tag_.place.transform;
-    gdal_.GDALSetGeoTransform(dataset, transform.data());
+    if (transform != std::array<double, 6>{}) gdal_.GDALSetGeoTransform(dataset, transform.data());
     if (!tag_.place.crs.empty()) {
       const GdalReference reference(gdal_.OSRNewSpatialReference(tag_.place.crs.c_str()));
       if (reference) gdal_.OSRSetAxisMappingStrategy(reference.get(), OAMS_TRADITIONAL_GIS_ORDER);

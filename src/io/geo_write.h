@@ -11,7 +11,7 @@ namespace hemibake {
 
 // What a GeoTIFF says beside its values.
 struct GeoTag {
-  const GeoPlace& place;
+  const GeoPlace& place;       // a transform of zeros: none
   const Grid<uint8_t>& holes;  // 1: NoData in every band; empty: none
 };
 

@@ -106,7 +106,7 @@ bool is_8_bit(const ChannelFacts& facts) {
 // What one reading found beside the heights.
 struct Found {
   bool is_constant = true;
-  std::string objection;
+  std::string objection, doubt;
 };
 
 // Reads one channel into the sink; surveys the colours where it is green.
@@ -132,13 +132,17 @@ Found read_channel(ChannelReader& reader, const Taken& taken, HeightSink& sink) 
       if (!first_value) first_value = value;
       if (value != *first_value) found.is_constant = false;
       if (taken.alpha) mask.put(at, texel[alpha]);
+      if (taken.green && taken.alpha) survey.add_alpha(texel[green], texel[alpha]);
       if (taken.red && taken.green)
         survey.add(texel[red], texel[green], taken.blue ? texel[blue] : 0,
                    (first + i) % static_cast<size_t>(facts.width) == 0);
     }
   });
   if (taken.alpha) mask.mark_holes(sink);
-  if (taken.red && taken.green) found.objection = survey.objection();
+  if (taken.red && taken.green) {
+    found.objection = survey.objection();
+    found.doubt = survey.doubt();
+  }
   return found;
 }
 
@@ -180,6 +184,7 @@ void read_one_channel(ChannelReader& reader, const HeightFileOptions& options,
       read_channel(reader, taken, *sink);
     }
   if (!found.is_constant && !found.objection.empty()) reader.refuse(found.objection);
+  if (!found.is_constant) file.doubt = found.doubt;
   file.channel = facts.channels[static_cast<size_t>(*taken.height)];
   sink->finish(file);
 }

@@ -50,6 +50,7 @@ struct HeightFile {
   int orientation = 1;      // as EXIF counts them; applied
   double pixel_aspect = 1;  // width of a texel over its height
   std::optional<GeoPlace> place;
+  std::string doubt;  // about the meaning of its channels, option names in braces; empty: none
 };
 
 // Reads the heights of a file. Throws InputError naming the file as io/image_io.h says, and for options that

@@ -40,10 +40,13 @@ using MutablePlane = BasicPlane<float>;
 
 ImageHeader read_image_header(const std::filesystem::path& path);
 
+// NaN in planes: an error, or texels without a value.
+enum class MissingValues { kRefused, kNaN };
+
 // Fills `planes`, each with room for width × height values, from the channels of their names in one pass.
 // Throws InputError where a channel is missing or the image has another size.
 void read_planes(const std::filesystem::path& path, int width, int height,
-                 std::span<const MutablePlane> planes);
+                 std::span<const MutablePlane> planes, MissingValues missing = MissingValues::kRefused);
 
 // Reads one channel. Throws InputError listing the channels where `channel` does not choose one.
 // channel: its name (any case where only one matches) or its index from 0; empty: the only one beside alpha,
@@ -57,9 +60,9 @@ struct NormalImage {
 };
 
 // Reads a normal map without decoding it: `normal.X`, `normal.Y`, `normal.Z` where it has them, as a bake
-// does, else the first three channels. Throws InputError naming both sizes where it is not width × height, and
-// where it is stored turned: which way its vectors point is open then.
-// channels: two or three to take instead, each by name or index; of two the third value is 0.
+// does, else the first three channels. Throws InputError naming both sizes where it is not width × height,
+// and where it is stored turned: which way its vectors point is open then. channels: two or three to take
+// instead, each by name or index; of two the third value is 0.
 NormalImage read_normal_map(const std::filesystem::path& path, int width, int height,
                             const std::vector<std::string>& channels = {});
 
@@ -76,7 +79,8 @@ ColorImage read_color_image(const std::filesystem::path& path);
 // doubles and ints; booleans as 0 or 1; integers beyond 32 bits as decimal strings; and `hemibake:provenance`
 // holds all of them as JSON, which is what read_image_header reads back. Throws std::logic_error naming
 // channel and texel for a value that is not finite; InputError for another extension, a value outside 0..1 in
-// a PNG, and where the file cannot be written.
+// a PNG, and where the file cannot be written. Provenance that says `holes` are `open` allows texels with NaN
+// in every plane, also in write_texture.
 void write_image(const std::filesystem::path& path, int width, int height, std::span<const Plane> planes,
                  const Provenance& provenance);
 
@@ -103,11 +107,11 @@ struct TextureCoding {
   bool dither = false;  // 8 bits: rounds up with the probability of the remainder, which keeps the mean
 };
 
-// Writes planes of linear data (0..1; any finite number in float formats) into `file`, which stays to be committed. PNG is written to nearest, or
-// dithered with a hash of channel and texel: the same bytes at every run. No colour space is claimed: no gAMA
-// and no sRGB chunk. Metadata as write_image; a TIFF has the JSON as its ImageDescription. Throws
-// std::logic_error for a value outside 0..1 or not finite, InputError where the file cannot be written.
-// planes: 1, 3 or 4; any number in float formats.
+// Writes planes of linear data (0..1; any finite number in float formats) into `file`, which stays to be
+// committed. PNG is written to nearest, or dithered with a hash of channel and texel: the same bytes at every
+// run. No colour space is claimed: no gAMA and no sRGB chunk. Metadata as write_image; a TIFF has the JSON as
+// its ImageDescription. Throws std::logic_error for a value outside 0..1 or not finite, InputError where the
+// file cannot be written. planes: 1, 3 or 4; any number in float formats.
 void write_texture(OutputFile& file, int width, int height, std::span<const Plane> planes,
                    const TextureCoding& coding, const Provenance& provenance);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/error.h"
 #include "io/image_io.h"
 #include "io/image_reader.h"
 
@@ -28,8 +29,13 @@ std::vector<int> normal_channels(const std::vector<std::string>& channels) {
 // Returns what a TIFF of this program says, in the one text that the format has; null for any other.
 Provenance provenance_in_description(const OIIO::ImageSpec& spec) {
   const std::string text(spec.get_string_attribute("ImageDescription"));
-  Provenance provenance = Provenance::parse(text, nullptr, false);
-  return provenance.is_object() && provenance.contains("texture") ? provenance : Provenance();
+  if (!text.starts_with('{')) return {};
+  try {
+    Provenance provenance = parse_provenance(text, "");
+    return provenance.contains("texture") ? provenance : Provenance();
+  } catch (const InputError&) {
+    return {};  // of another program
+  }
 }
 
 }  // namespace
@@ -39,13 +45,14 @@ ImageHeader read_image_header(const fs::path& path) {
   const OIIO::ImageSpec& spec = reader.spec();
   ImageHeader header{reader.width(), reader.height(), spec.channelnames, nullptr};
   const std::string text(spec.get_string_attribute("hemibake:provenance"));
-  header.provenance = Provenance::parse(text.empty() ? "null" : text, nullptr, false);
-  if (header.provenance.is_discarded()) reader.refuse("attribute hemibake:provenance is not JSON");
-  if (text.empty()) header.provenance = provenance_in_description(spec);
+  header.provenance = text.empty()
+                          ? provenance_in_description(spec)
+                          : parse_provenance(text, path.string() + ": attribute hemibake:provenance");
   return header;
 }
 
-void read_planes(const fs::path& path, int width, int height, std::span<const MutablePlane> planes) {
+void read_planes(const fs::path& path, int width, int height, std::span<const MutablePlane> planes,
+                 MissingValues missing) {
   ImageReader reader(path);
   check_size(reader, width, height, "");
   const std::vector<std::string>& channels = reader.facts().channels;
@@ -56,7 +63,7 @@ void read_planes(const fs::path& path, int width, int height, std::span<const Mu
       reader.refuse(fmt::format("has no channel '{}', only {}", plane.channel, fmt::join(channels, ", ")));
     indices.push_back(static_cast<int>(found - channels.begin()));
   }
-  if (!planes.empty()) reader.fill(planes, indices);
+  if (!planes.empty()) reader.fill(planes, indices, missing);
 }
 
 Grid<float> read_height_map(const fs::path& path, const std::string& channel) {

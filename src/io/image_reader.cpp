@@ -244,7 +244,8 @@ void ImageReader::read(int begin, int end, const BlockVisitor& visit) {
   }
 }
 
-void ImageReader::fill(std::span<const MutablePlane> planes, std::span<const int> indices) {
+void ImageReader::fill(std::span<const MutablePlane> planes, std::span<const int> indices,
+                       MissingValues missing) {
   const auto [low, high] = std::minmax_element(indices.begin(), indices.end());
   const int begin = *low;
   const auto channels = static_cast<size_t>(*high + 1 - begin);
@@ -254,7 +255,8 @@ void ImageReader::fill(std::span<const MutablePlane> planes, std::span<const int
       for (size_t i = 0; i < values.size() / channels; ++i) {
         const size_t texel = upright(first + i);
         const float value = values[i * channels + offset];
-        if (!std::isfinite(value)) refuse_value(*this, planes[k].channel, texel, value);
+        const bool is_missing = missing == MissingValues::kNaN && std::isnan(value);
+        if (!std::isfinite(value) && !is_missing) refuse_value(*this, planes[k].channel, texel, value);
         planes[k].first[texel * planes[k].stride] = value;
       }
     }

@@ -28,8 +28,9 @@ class ImageReader : public ChannelReader {
   void read(int begin, int end, const BlockVisitor& visit) override;
 
   // Fills planes[k], right way up, from channel indices[k], all in one pass. Throws InputError naming channel
-  // and texel for a value that is not finite.
-  void fill(std::span<const MutablePlane> planes, std::span<const int> indices);
+  // and texel for a value that is not finite, but for NaN where `missing` allows it.
+  void fill(std::span<const MutablePlane> planes, std::span<const int> indices,
+            MissingValues missing = MissingValues::kRefused);
 
  private:
   struct Window {

@@ -90,22 +90,35 @@ void add_attributes(OIIO::ImageSpec& spec, const Provenance& provenance) {
   if (!provenance.empty()) spec.attribute("hemibake:provenance", provenance.dump());
 }
 
+enum class Holes { kNone, kOpen };
+
+Holes holes_in(const Provenance& provenance) {
+  return provenance.is_object() && provenance.value("holes", "") == "open" ? Holes::kOpen : Holes::kNone;
+}
+
+// Returns whether no plane has a value at a texel.
+bool is_hole(std::span<const Plane> planes, size_t texel) {
+  return std::ranges::all_of(
+      planes, [&](const Plane& plane) { return std::isnan(plane.first[texel * plane.stride]); });
+}
+
 // Calls refuse("channel C is VALUE at texel X,Y") for every value that is not usable.
 template <class Usable, class Refuse>
-void check_values(int width, int height, std::span<const Plane> planes, Usable usable, Refuse refuse) {
+void check_values(int width, int height, std::span<const Plane> planes, Holes holes, Usable usable,
+                  Refuse refuse) {
   const size_t texels = static_cast<size_t>(width) * static_cast<size_t>(height);
   for (const Plane& plane : planes)
     for (size_t i = 0; i < texels; ++i) {
       const float value = plane.first[i * plane.stride];
-      if (usable(value)) continue;
+      if (usable(value) || (holes == Holes::kOpen && is_hole(planes, i))) continue;
       const auto columns = static_cast<size_t>(width);
       refuse(fmt::format("channel {} is {} at texel {},{}", plane.channel, value, i % columns, i / columns));
     }
 }
 
-void check_finite(const fs::path& path, int width, int height, std::span<const Plane> planes) {
+void check_finite(const fs::path& path, int width, int height, std::span<const Plane> planes, Holes holes) {
   check_values(
-      width, height, planes, [](float value) { return std::isfinite(value); },
+      width, height, planes, holes, [](float value) { return std::isfinite(value); },
       [&](const std::string& what) {
         throw std::logic_error(
             fmt::format("internal check failed: {}: {}, expected a finite number", path.string(), what));
@@ -195,7 +208,7 @@ void write_png16(const fs::path& path, int width, int height, std::span<const Pl
     throw InputError(
         fmt::format("{}: {} channels do not fit a PNG, expected an .exr", path.string(), planes.size()));
   check_values(
-      width, height, planes, [](float value) { return value >= 0 && value <= 1; },
+      width, height, planes, Holes::kNone, [](float value) { return value >= 0 && value <= 1; },
       [&](const std::string& what) {
         throw InputError(
             fmt::format("{}: {}, expected 0..1 in a PNG (an .exr takes any)", path.string(), what));
@@ -248,7 +261,7 @@ void write_texture(OutputFile& file, int width, int height, std::span<const Plan
   if (width < 1 || height < 1 || planes.empty()) throw std::logic_error("a texture to write is empty");
   const bool is_float = texture_format_info(coding.format).is_float;
   check_values(
-      width, height, planes,
+      width, height, planes, is_float ? holes_in(provenance) : Holes::kNone,
       [&](float value) { return is_float ? std::isfinite(value) : value >= 0 && value <= 1; },
       [&](const std::string& what) {
         throw std::logic_error(fmt::format("internal check failed: {}: {}, expected {}", file.path().string(),
@@ -263,7 +276,7 @@ void write_texture(OutputFile& file, int width, int height, std::span<const Plan
 void write_image(const fs::path& path, int width, int height, std::span<const Plane> planes,
                  const Provenance& provenance) {
   if (width < 1 || height < 1 || planes.empty()) throw std::logic_error("an image to write is empty");
-  check_finite(path, width, height, planes);
+  check_finite(path, width, height, planes, holes_in(provenance));
   const std::string extension = lower_case_extension(path);
   if (extension == ".exr") {
     OutputFile file(path);
@@ -284,7 +297,7 @@ void write_png8_rgb(const fs::path& path, const Grid<glm::vec3>& picture, const 
   if (picture.empty()) throw std::logic_error("a picture to write is empty");
   const std::array planes{Plane{"R", &picture.values[0].x, 3}, Plane{"G", &picture.values[0].y, 3},
                           Plane{"B", &picture.values[0].z, 3}};
-  check_finite(path, picture.width, picture.height, planes);
+  check_finite(path, picture.width, picture.height, planes, Holes::kNone);
   OIIO::ImageSpec spec = make_spec(picture.width, picture.height, planes, OIIO::TypeDesc::UINT8, provenance);
   spec.attribute("oiio:ColorSpace", "sRGB");
   OutputFile file(path);

@@ -28,10 +28,11 @@ void write_links(const std::filesystem::path& path, const FormFactorMatrix& fina
                  const FormFactorMatrix* patches, std::span<const float> direct,
                  const Provenance& provenance);
 
-// Reads and packs the rows again. Rows packed by a bake stay as they are to 10⁻⁴ of their quantum
-// (transport/links/form_factors.h); others are rounded with their sum kept. Throws InputError naming the file
-// where it is not a whole links file, row starts or columns do not ascend, a column is beyond the matrix, or
-// a value is not finite or a weight below 0.
+// Reads and packs the rows again, without HDF5 (links_layout.h), in memory bounded by the file's size. Rows
+// packed by a bake stay as they are to 10⁻⁴ of their quantum (transport/links/form_factors.h); others are
+// rounded with their sum kept. Throws InputError naming the file where it is not a links file of this version
+// as it was written: a hash differs, row starts or columns do not ascend, a column is beyond the matrix, or a
+// value is not finite or below 0.
 LinksFile read_links(const std::filesystem::path& path);
 
 }  // namespace hemibake

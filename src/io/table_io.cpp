@@ -7,9 +7,13 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <unordered_set>
 
+#include "core/context.h"
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/input_file.h"
+#include "io/json_text.h"
 #include "io/output_file.h"
 
 namespace hemibake {
@@ -30,37 +34,66 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   }
 }
 
-// Splits at line ends; drops a byte-order mark and the empty piece after the last line end.
-std::vector<std::string_view> split_lines(std::string_view text) {
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  std::vector<std::string_view> lines = split(text, '\n');
-  if (lines.back().empty()) lines.pop_back();
-  for (std::string_view& line : lines)
+// Takes a text apart at its line ends.
+class Lines {
+ public:
+  // Leaves out a byte-order mark.
+  explicit Lines(std::string_view text) : rest_(text) {
+    if (rest_.starts_with(kByteOrderMark)) rest_.remove_prefix(kByteOrderMark.size());
+  }
+  // Returns the next line without its end, or none after the last.
+  std::optional<std::string_view> next() {
+    if (rest_.empty()) return std::nullopt;
+    ++number_;
+    const size_t end = rest_.find('\n');
+    std::string_view line = rest_.substr(0, end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
     if (line.ends_with('\r')) line.remove_suffix(1);
-  return lines;
-}
+    return line;
+  }
+  size_t number() const { return number_; }  // of the last one, from 1
+
+ private:
+  std::string_view rest_;
+  size_t number_ = 0;
+};
 
 // Returns the fault of the column names; empty where there is none.
 std::string column_error(const std::vector<std::string>& columns) {
+  std::unordered_set<std::string_view> names;
   for (size_t i = 0; i < columns.size(); ++i) {
     if (columns[i].empty()) return fmt::format("column {} has no name", i + 1);
-    if (std::find(columns.begin(), columns.begin() + static_cast<ptrdiff_t>(i), columns[i]) !=
-        columns.begin() + static_cast<ptrdiff_t>(i))
-      return fmt::format("column '{}' is there twice", columns[i]);
+    if (!names.insert(columns[i]).second)
+      return fmt::format("column '{}' is there twice", excerpt(columns[i]));
   }
   return "";
 }
 
-// Parses a finite number, or nothing from an empty cell. place: for the error, "FILE:LINE: …".
-std::optional<double> parse_cell(std::string_view cell, const std::string& place) {
+// Parses a finite number, or nothing from an empty cell. place: returns that of the cell, "FILE:LINE: …".
+template <class Place>
+std::optional<double> parse_cell(std::string_view cell, const Place& place) {
   if (cell.empty()) return std::nullopt;
   double value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value))
-    throw InputError(fmt::format("{}: {} is not usable, expected a finite number or nothing", place,
-                                 nlohmann::ordered_json(cell.substr(0, 40))
-                                     .dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace)));
+    throw InputError(fmt::format("{}: \"{}\" is not usable, expected a finite number or nothing", place(),
+                                 excerpt(cell, 40)));
   return value;
+}
+
+// Parses a line of cells for all columns.
+std::vector<std::optional<double>> parse_row(std::string_view line, const std::vector<std::string>& columns,
+                                             const std::string& place) {
+  const auto count = static_cast<size_t>(std::ranges::count(line, ',')) + 1;
+  if (count != columns.size())
+    throw InputError(
+        fmt::format("{}: has {} cells, expected {} as in the first line", place, count, columns.size()));
+  std::vector<std::optional<double>> row;
+  row.reserve(count);
+  for (const std::string_view cell : split(line, ','))
+    row.push_back(parse_cell(
+        cell, [&] { return fmt::format("{}: column '{}'", place, excerpt(columns[row.size()])); }));
+  return row;
 }
 
 // Throws std::logic_error with the place of a number that is not finite.
@@ -75,23 +108,26 @@ void check_finite(const nlohmann::ordered_json& json, const std::string& place) 
 }  // namespace
 
 Table read_csv(const fs::path& path) {
-  const std::string text = read_whole_file(path);
-  const std::vector<std::string_view> lines = split_lines(text);
-  if (lines.empty())
-    throw InputError(fmt::format("{}: is empty, expected a line of column names", path.string()));
+  const std::string text = read_whole_file(path, kMaxTableBytes);
+  Lines lines(text);
+  const std::optional<std::string_view> header = lines.next();
+  if (!header) throw InputError(fmt::format("{}: is empty, expected a line of column names", path.string()));
+  auto check_size = [&, cells = size_t{0}](size_t more) mutable {
+    cells += more;
+    if (cells > kMaxTableCells)
+      throw InputError(fmt::format("{}:{}: more than {} cells, expected fewer", path.string(), lines.number(),
+                                   kMaxTableCells));
+  };
+  check_size(static_cast<size_t>(std::ranges::count(*header, ',')));
   Table table;
-  for (const std::string_view name : split(lines[0], ',')) table.columns.emplace_back(name);
+  for (const std::string_view name : split(*header, ',')) table.columns.emplace_back(name);
   if (const std::string error = column_error(table.columns); !error.empty())
     throw InputError(fmt::format("{}:1: {}, expected a name of its own for each", path.string(), error));
-  for (size_t i = 1; i < lines.size(); ++i) {
-    const std::vector<std::string_view> cells = split(lines[i], ',');
-    if (cells.size() != table.columns.size())
-      throw InputError(fmt::format("{}:{}: has {} cells, expected {} as in the first line", path.string(),
-                                   i + 1, cells.size(), table.columns.size()));
-    auto& row = table.rows.emplace_back();
-    for (size_t c = 0; c < cells.size(); ++c)
-      row.push_back(
-          parse_cell(cells[c], fmt::format("{}:{}: column '{}'", path.string(), i + 1, table.columns[c])));
+  while (const std::optional<std::string_view> line = lines.next()) {
+    throw_if_cancelled();
+    check_size(table.columns.size() + 4);
+    table.rows.push_back(
+        parse_row(*line, table.columns, fmt::format("{}:{}", path.string(), lines.number())));
   }
   return table;
 }
@@ -126,16 +162,16 @@ std::optional<size_t> find_column(const Table& table, std::string_view name) {
 }
 
 std::vector<double> read_numbers(const fs::path& path, size_t count) {
-  const std::string text = read_whole_file(path);
-  const std::vector<std::string_view> lines = split_lines(text);
+  const std::string text = read_whole_file(path, kMaxTableBytes);
   std::vector<double> numbers;
-  for (size_t i = 0; i < lines.size(); ++i) {
-    std::string line(lines[i].substr(0, lines[i].find('#')));
+  Lines lines(text);
+  while (const std::optional<std::string_view> next = lines.next()) {
+    std::string line(next->substr(0, next->find('#')));
     std::replace_if(
         line.begin(), line.end(), [](char c) { return c == ',' || c == '\t'; }, ' ');
+    const auto place = [&] { return fmt::format("{}:{}", path.string(), lines.number()); };
     for (const std::string_view word : split(line, ' '))
-      if (const auto number = parse_cell(word, fmt::format("{}:{}", path.string(), i + 1)))
-        numbers.push_back(*number);
+      if (const auto number = parse_cell(word, place)) numbers.push_back(*number);
   }
   if (numbers.size() != count)
     throw InputError(fmt::format("{}: holds {} numbers, expected {}", path.string(), numbers.size(), count));
@@ -143,14 +179,7 @@ std::vector<double> read_numbers(const fs::path& path, size_t count) {
 }
 
 nlohmann::ordered_json read_json(const fs::path& path) {
-  const std::string text = read_whole_file(path);
-  try {
-    return nlohmann::ordered_json::parse(text);
-  } catch (const nlohmann::ordered_json::exception& error) {
-    // "[json.exception.parse_error.101] parse error at line 1, column 2: …": the position is what helps.
-    const std::string_view what = error.what();
-    throw InputError(fmt::format("{}: {}, expected JSON", path.string(), what.substr(what.find("] ") + 2)));
-  }
+  return parse_json(read_whole_file(path, kMaxJsonBytes), path.string());
 }
 
 void write_json(const fs::path& path, const nlohmann::ordered_json& json) {

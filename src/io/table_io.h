@@ -10,6 +10,9 @@
 
 namespace hemibake {
 
+constexpr size_t kMaxTableBytes = size_t{256} << 20;
+constexpr size_t kMaxTableCells = size_t{1} << 24;  // of read_csv; a line counts as four more
+
 // Columns by name; a missing cell is empty.
 struct Table {
   std::vector<std::string> columns;
@@ -18,8 +21,8 @@ struct Table {
 
 // Reads one header line of names, then one line of numbers per row, separated by commas; an empty cell is
 // missing. Takes LF and CRLF line ends, a last line without one, and a byte-order mark. Throws InputError
-// naming file, line and column for a name that is empty or repeated, a row of another length, and a cell that
-// is not a finite number.
+// naming file, line and column for a name that is empty or repeated, a row of another length, a cell that is
+// not a finite number, and more than kMaxTableBytes or kMaxTableCells.
 Table read_csv(const std::filesystem::path& path);
 
 // Writes numbers in the shortest form that reads back exactly. Throws std::logic_error for a table that
@@ -33,7 +36,7 @@ std::optional<size_t> find_column(const Table& table, std::string_view name);
 // file and line for anything else, and where there are not `count` of them.
 std::vector<double> read_numbers(const std::filesystem::path& path, size_t count);
 
-// Reads JSON with its names in their order. Throws InputError naming file and position of a syntax error.
+// Reads JSON with its names in their order. Throws InputError as parse_json (json_text.h).
 nlohmann::ordered_json read_json(const std::filesystem::path& path);
 
 // Writes with an indent of two spaces and a final line end. Throws std::logic_error naming a number that is

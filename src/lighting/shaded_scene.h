@@ -27,7 +27,8 @@ struct ShadedScene {
   Grid<glm::vec3> sun;         // irradiance of the sun with its shadows; empty: no sun
   std::optional<Relit> truth;  // of sky and sun together
   std::optional<ShadingModel> model;
-  std::optional<Surface> surface;  // if the map was found
+  std::optional<Surface> surface;  // of the bake's texels, if the map was found
+  bool is_cropped = false;         // the map goes on around the bake's texels
 };
 
 // Shading returns the light that leaves each texel, ρE/π, RGB: 1 for a white scene in the open under a sky of

@@ -9,6 +9,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/portable_math.h"
+
 namespace hemibake {
 
 // Returns max(1 − α, 0): the abscissa of 2018 runs to 100/99.
@@ -20,28 +22,24 @@ X complement(X ao) {
 // Returns F₀(α) = α(1 + k(1−α)^e), notes eq. 7 with k = ½, e = ¾. At most 1 for e >= 1, 0 <= k <= 1.
 template <class T, class X>
 T direct_factor(X ao, const T& k, const T& e) {
-  using std::pow;
-  return ao * (T(1) + k * pow(complement(ao), e));
+  return ao * (T(1) + k * PortableMath<T>::pow(complement(ao), e));
 }
 
 // Returns F₁(α) = A α (1−α)^1.5 exp(−B α^¼), notes eq. 11.
 template <class T, class X>
 T first_bounce_factor(X ao, const T& a, const T& b) {
-  using std::exp;
   using std::sqrt;
   const X rest = complement(ao);
-  return ao * rest * sqrt(rest) * a * exp(-b * sqrt(sqrt(ao)));
+  return ao * rest * sqrt(rest) * a * PortableMath<T>::exp(-b * sqrt(sqrt(ao)));
 }
 
 // Returns F_b(α) = A α (1−α)^1.5 exp(−B α^C), notes, "Summing the Curves"; α > 0.
 // a, b, c: one set for each bounce b >= 1.
 template <class T, class X>
 T bounce_factor(X ao, const T& a, const T& b, const T& c) {
-  using std::exp;
-  using std::pow;
   using std::sqrt;
   const X rest = complement(ao);
-  return ao * rest * sqrt(rest) * a * exp(-b * pow(ao, c));
+  return ao * rest * sqrt(rest) * a * PortableMath<T>::exp(-b * PortableMath<T>::pow(ao, c));
 }
 
 // Returns F₀ = α(1 + (1−α) s(α)) of the bounded model, s = k0 + (k1 − k0) α². Lies between α² (s = −1, the

@@ -218,7 +218,8 @@ void add_saturation(const ShadedScene& scene, const SceneImages& shaded, Gallery
 
 void add_views(const ShadedScene& scene, const SceneImages& shaded, const PictureOptions& options,
                Gallery& gallery) {
-  if (!scene.surface) return gallery.report_missing("views", "the map of the bake was not found");
+  if (!scene.surface)
+    return gallery.report_missing("views", "the map of the bake was not found, or is another now");
   const View view = trace_view(*scene.surface, options.camera);
   const auto seen = [&](const Grid<glm::vec3>& picture) {
     return paint_view(*scene.surface, view, picture, glm::vec3(0));

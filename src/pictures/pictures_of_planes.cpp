@@ -79,7 +79,10 @@ void add_planes(const ShadedScene& scene, Gallery& gallery) {
 void add_estimators(const ShadedScene& scene, Gallery& gallery) {
   if (scene.bake.visible_fraction.empty())
     return gallery.report_missing("estimators", "the bake holds no ao to compare with");
-  if (!scene.surface) return gallery.report_missing("estimators", "the map of the bake was not found");
+  if (!scene.surface)
+    return gallery.report_missing("estimators", "the map of the bake was not found, or is another now");
+  if (scene.is_cropped)
+    return gallery.report_missing("estimators", "the bake is cropped, and what was cropped occludes it");
   std::array<std::vector<Panel>, 2> rows;
   rows[0].push_back(grey_panel(scene.bake.visible_fraction, "the bake, alpha"));
   const EstimatorOptions options;

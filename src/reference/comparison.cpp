@@ -51,8 +51,10 @@ size_t bin_of(double ao, int bins) {
 // Samples texels in strata by AO, each with a share in proportion to the root of its texel count.
 TexelSample sample_by_ao(const Grid<float>& ao, const RefereeCheckOptions& options) {
   std::vector<std::vector<uint32_t>> population(static_cast<size_t>(options.ao_bins));
-  for (size_t i = 0; i < ao.size(); ++i)
+  for (size_t i = 0; i < ao.size(); ++i) {
+    if (std::isnan(ao[i])) continue;  // a hole
     population[bin_of(static_cast<double>(ao[i]), options.ao_bins)].push_back(static_cast<uint32_t>(i));
+  }
   double roots = 0;
   for (const auto& texels : population) roots += std::sqrt(static_cast<double>(texels.size()));
 

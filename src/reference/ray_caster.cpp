@@ -18,7 +18,8 @@ struct HeightFieldRayCaster::Ray {
   double x, y, z_m;
   double dx, dy, dz_m;
   double inverse_dx, inverse_dy;
-  double end;  // leaves the relief: above its top, or surely below the ground (height 0)
+  double end;             // leaves the relief: above its top, or surely below the ground (height 0)
+  bool is_below = false;  // the surface: it came through a hole
 
   double x_at(double t) const { return x + t * dx; }
   double y_at(double t) const { return y + t * dy; }
@@ -103,34 +104,52 @@ HeightFieldRayCaster::Block HeightFieldRayCaster::block_at(const Cell& cell) con
           max_mips_m_[static_cast<size_t>(cell.level - 1)](block_x, block_y)};
 }
 
-bool HeightFieldRayCaster::hits_triangle(const Ray& ray, const Triangle& triangle, double enter, double leave,
-                                         SurfacePoint& hit) const {
+// Returns whether a triangle is no surface: a corner of it is a hole.
+bool HeightFieldRayCaster::is_open(const Cell& cell, bool far_half) const {
+  if (surface_.holes.empty()) return false;
+  const auto is_hole = [&](int x, int y) {
+    return surface_.is_hole(x == surface_.width() ? 0 : x, y == surface_.height() ? 0 : y);
+  };
+  return is_hole(cell.x + 1, cell.y) || is_hole(cell.x, cell.y + 1) ||
+         (far_half ? is_hole(cell.x + 1, cell.y + 1) : is_hole(cell.x, cell.y));
+}
+
+// Returns where a ray ends inside a triangle, if it does.
+std::optional<RayOutcome> HeightFieldRayCaster::meet_triangle(Ray& ray, const Cell& cell, bool far_half,
+                                                              double enter, double leave,
+                                                              SurfacePoint& hit) const {
+  const Triangle triangle = triangle_of(cell, far_half);
   const double below = triangle.height_m(ray.x_at(leave), ray.y_at(leave)) - ray.z_at(leave);
-  if (below <= 0) return false;
+  if (is_open(cell, far_half)) {
+    ray.is_below = below > 0;
+    return std::nullopt;
+  }
+  if (ray.is_below) return below > 0 ? std::nullopt : std::optional(RayOutcome::kBelow);
+  if (below <= 0) return std::nullopt;
   // Rounding may put the entry below the plane too: it counts as on it.
   const double above = std::max(0.0, ray.z_at(enter) - triangle.height_m(ray.x_at(enter), ray.y_at(enter)));
   const double t = enter + (leave - enter) * above / (above + below);
   hit = point_on(triangle, ray.x_at(t), ray.y_at(t));
-  return true;
+  return RayOutcome::kHit;
 }
 
-bool HeightFieldRayCaster::hits_cell(const Ray& ray, const Cell& cell, double enter, double leave,
-                                     SurfacePoint& hit) const {
+std::optional<RayOutcome> HeightFieldRayCaster::meet_cell(Ray& ray, const Cell& cell, double enter,
+                                                          double leave, SurfacePoint& hit) const {
   // The diagonal is where the shares along both legs add up to 1.
   const double diagonal = cell.x + cell.y + 1.0;
   const double enter_side = ray.x_at(enter) + ray.y_at(enter) - diagonal;
   const double leave_side = ray.x_at(leave) + ray.y_at(leave) - diagonal;
   if ((enter_side < 0) == (leave_side < 0))
-    return hits_triangle(ray, triangle_of(cell, enter_side >= 0), enter, leave, hit);
+    return meet_triangle(ray, cell, enter_side >= 0, enter, leave, hit);
   const double cross = enter + (leave - enter) * enter_side / (enter_side - leave_side);
-  return hits_triangle(ray, triangle_of(cell, enter_side >= 0), enter, cross, hit) ||
-         hits_triangle(ray, triangle_of(cell, leave_side >= 0), cross, leave, hit);
+  const auto first = meet_triangle(ray, cell, enter_side >= 0, enter, cross, hit);
+  return first ? first : meet_triangle(ray, cell, leave_side >= 0, cross, leave, hit);
 }
 
 HeightFieldRayCaster::Ray HeightFieldRayCaster::make_ray(const glm::dvec3& start,
                                                          const glm::dvec3& direction) const {
   const double texel = surface_.texel_size_m;
-  Ray ray{start.x, start.y, start.z * texel, direction.x, direction.y, direction.z * texel, 0, 0, 0};
+  Ray ray{start.x, start.y, start.z * texel, direction.x, direction.y, direction.z * texel, 0, 0, 0, false};
   // Finite, so that on the very edge of a block (0 texels to go) the product is 0.
   constexpr double kNever = 1e300;
   ray.inverse_dx = ray.dx == 0 ? kNever : 1 / ray.dx;
@@ -187,13 +206,16 @@ RayOutcome HeightFieldRayCaster::cast(const glm::dvec3& start, const glm::dvec3&
       --cell.level;
       continue;
     }
-    if (!clear && hits_cell(ray, cell, t, leave, hit)) {
+    if (clear) ray.is_below = false;
+    const std::optional<RayOutcome> end = clear ? std::nullopt : meet_cell(ray, cell, t, leave, hit);
+    if (end == RayOutcome::kHit) {
       hit.position.x = std::clamp(hit.position.x, 1.0 * cell.x, cell.x + 1.0);
       hit.position.y = std::clamp(hit.position.y, 1.0 * cell.y, cell.y + 1.0);
-      return RayOutcome::kHit;
     }
-    const RayOutcome beyond =
-        surface_.edge == Edge::kGround && ray.dz_m < 0 ? RayOutcome::kGround : RayOutcome::kEscaped;
+    if (end) return *end;
+    const RayOutcome beyond = ray.is_below                                     ? RayOutcome::kBelow
+                              : surface_.edge == Edge::kGround && ray.dz_m < 0 ? RayOutcome::kGround
+                                                                               : RayOutcome::kEscaped;
     if (leave >= ray.end) return beyond;
     t = leave;
     if (!enter_next(block, leave_x <= leave_y, t, ray, cell)) return beyond;

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/grid.h"
@@ -40,6 +41,7 @@ class HeightFieldRayCaster {
   // start: on or above the surface and inside the map, texels.
   // direction: unit.
   // hit: set if the outcome is kHit: position wrapped into the map, normal of the facet.
+  // kBelow where it comes through a hole and meets the underside, or leaves the map below the surface.
   RayOutcome cast(const glm::dvec3& start, const glm::dvec3& direction, SurfacePoint& hit) const;
 
   // Returns the point of a facet at shares u, v of its legs along x and y.
@@ -75,9 +77,11 @@ class HeightFieldRayCaster {
   Block block_at(const Cell& cell) const;
   void build_max_mips();
   Ray make_ray(const glm::dvec3& start, const glm::dvec3& direction) const;
-  bool hits_cell(const Ray& ray, const Cell& cell, double enter, double leave, SurfacePoint& hit) const;
-  bool hits_triangle(const Ray& ray, const Triangle& triangle, double enter, double leave,
-                     SurfacePoint& hit) const;
+  bool is_open(const Cell& cell, bool far_half) const;
+  std::optional<RayOutcome> meet_cell(Ray& ray, const Cell& cell, double enter, double leave,
+                                      SurfacePoint& hit) const;
+  std::optional<RayOutcome> meet_triangle(Ray& ray, const Cell& cell, bool far_half, double enter,
+                                          double leave, SurfacePoint& hit) const;
   bool enter_next(const Block& block, bool along_x, double t, Ray& ray, Cell& cell) const;
 
   const Surface& surface_;

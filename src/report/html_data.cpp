@@ -54,13 +54,16 @@ std::vector<TexelErrors> texel_errors(const Bake& bake, std::span<const ReportMo
     errors.push_back(
         {albedo, std::vector<double>(models.size()), std::vector<double>(other_shadings().size())});
   const size_t count = bake.visible_fraction.size();
+  size_t texels = 0;
   for (size_t i = 0; i < count; ++i) {
+    if (is_hole(bake, i)) continue;
+    ++texels;
     const TexelInputs inputs = texel_inputs(bake, i);
     for (TexelErrors& sums : errors) add_squares(inputs, irradiance_at(bake, i, sums.albedo), models, sums);
   }
   for (TexelErrors& sums : errors)
     for (std::vector<double>* list : {&sums.models, &sums.others})
-      for (double& square : *list) square = std::sqrt(square / static_cast<double>(count));
+      for (double& square : *list) square = std::sqrt(square / static_cast<double>(texels));
   return errors;
 }
 
@@ -68,16 +71,19 @@ BakeMeans means_of(const Bake& bake) {
   BakeMeans means;
   if (!bake.visible_fraction.empty()) means.ao = mean(bake.visible_fraction.values);
   if (has_visibility(bake)) {
-    double sum = 0;
+    Moments visibility;
     const size_t count = static_cast<size_t>(bake.width) * static_cast<size_t>(bake.height);
-    for (size_t i = 0; i < count; ++i) sum += visibility_at(bake, i);
-    means.visibility = sum / static_cast<double>(count);
+    for (size_t i = 0; i < count; ++i)
+      if (!is_hole(bake, i)) visibility.add(visibility_at(bake, i));
+    means.visibility = visibility.mean;
   }
   for (const Grid<float>& plane : bake.irradiance) means.irradiance.push_back(mean(plane.values) / kPi);
   if (!bake.total.empty()) means.total = mean(bake.total.values) / kPi;
   if (!bake.residual.empty()) {
     means.residual = mean(bake.residual.values);
-    means.worst_residual = *std::ranges::max_element(bake.residual.values);
+    means.worst_residual = -HUGE_VAL;
+    for (const float residual : bake.residual.values)
+      means.worst_residual = std::fmax(*means.worst_residual, static_cast<double>(residual));
   }
   return means;
 }

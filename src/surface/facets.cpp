@@ -1,5 +1,6 @@
 #include "surface/facets.h"
 
+#include <algorithm>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -20,6 +21,13 @@ FacetCorners facet_corners(const Surface& surface, uint32_t facet) {
   const int j = static_cast<int>(cell / facet_columns(surface));
   if (facet % 2 == 0) return {{{{i, j}, {i + 1, j}, {i, j + 1}}}};
   return {{{{i + 1, j + 1}, {i, j + 1}, {i + 1, j}}}};
+}
+
+bool facet_is_open(const Surface& surface, uint32_t facet) {
+  if (surface.holes.empty()) return false;
+  return std::ranges::any_of(facet_corners(surface, facet).texel, [&](const glm::ivec2& corner) {
+    return surface.is_hole(wrap_index(corner.x, surface.width()), wrap_index(corner.y, surface.height()));
+  });
 }
 
 std::array<glm::dvec3, 3> facet_positions_texels(const Surface& surface, uint32_t facet) {

@@ -28,6 +28,9 @@ uint32_t facet_columns(const Surface& surface);
 // Returns the corners of a facet.
 FacetCorners facet_corners(const Surface& surface, uint32_t facet);
 
+// Returns whether a facet is no surface: one of its corners is a hole.
+bool facet_is_open(const Surface& surface, uint32_t facet);
+
 // Returns the corner positions in units of texels: x = i, y = j, z = height / texel size (unwrapped).
 std::array<glm::dvec3, 3> facet_positions_texels(const Surface& surface, uint32_t facet);
 

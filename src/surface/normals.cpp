@@ -96,7 +96,8 @@ Grid<glm::vec3> angle_weighted_normals(const Surface& surface) {
     for (int c = 0; c < 3; ++c) {
       const glm::dvec3 a = glm::normalize(p[(c + 1) % 3] - p[c]);
       const glm::dvec3 b = glm::normalize(p[(c + 2) % 3] - p[c]);
-      const double angle = std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
+      // A cosine does not tell the angles of a needle.
+      const double angle = std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
       sums(corners.texel[c].x % surface.width(), corners.texel[c].y % surface.height()) += angle * normal;
     }
   }

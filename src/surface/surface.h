@@ -25,10 +25,15 @@ struct Surface {
   Grid<glm::vec3> normals;  // unit length, z > 0: the shading normal of each texel
   double texel_size_m = 1;  // t = size / max(width, height)
   Edge edge = Edge::kWrap;
+  // Of the heights' size, 1: no surface, although the heights go on smoothly there; empty: none.
+  Grid<uint8_t> holes;
 
   int width() const { return heights_m.width; }
   int height() const { return heights_m.height; }
   uint32_t texel_count() const { return static_cast<uint32_t>(heights_m.size()); }
+  // Returns whether a texel has no surface. x, y: in the map.
+  bool is_hole(size_t texel) const { return !holes.empty() && holes[texel] != 0; }
+  bool is_hole(int x, int y) const { return !holes.empty() && holes(x, y) != 0; }
 };
 
 // Largest map taken, texels: patch indices stay below 2^31.

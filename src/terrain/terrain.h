@@ -19,7 +19,7 @@ inline constexpr double kCurvedMapM = 1e4;
 
 struct TerrainOptions {
   bool svf = false, openness = false, negative_openness = false;
-  int azimuths = 64;                                          // of these three, 1..
+  int azimuths = 128;                                         // of these three, 1..
   int horizon_azimuths = 0;                                   // 0: no horizon angles
   double radius_m = std::numeric_limits<double>::infinity();  // farther terrain does not count, > 0
   bool curvature = false;  // terrain at distance d is lower by d² (1 − kRefraction) / (2 kEarthRadiusM)

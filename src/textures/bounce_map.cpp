@@ -1,6 +1,7 @@
 #include "textures/bounce_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/parallel.h"
@@ -22,7 +23,7 @@ struct Candidate {
 using Candidates = std::array<Candidate, kCandidates>;
 
 int nearest_step(double value, int steps) {
-  return static_cast<int>(std::clamp(value, 0.0, 1.0) * steps + 0.5);
+  return std::isnan(value) ? 0 : static_cast<int>(std::clamp(value, 0.0, 1.0) * steps + 0.5);
 }
 
 double squared(double value) { return value * value; }
@@ -110,7 +111,10 @@ StoredBlock round_steps(const LightBlock& block, int steps) {
   return stored;
 }
 
-StoredBlock choose_steps(const LightBlock& block, int steps, double bounce_albedo) {
+StoredBlock choose_steps(const LightBlock& given, int steps, double bounce_albedo) {
+  LightBlock block = given;
+  for (size_t i = 0; i < block.size(); ++i)
+    if (std::isnan(block.texels[i].visibility)) block.texels[i] = {};  // a hole
   StoredBlock chosen = round_steps(block, steps);
   StoredPair sum;
   std::array<Candidates, LightBlock{}.texels.size()> candidates;

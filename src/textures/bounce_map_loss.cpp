@@ -96,6 +96,7 @@ void add_block(const LightBlock& block, double bounce_albedo, PieceSums& sums) {
       for (int y = 0; y + box <= block.height; y += box)
         for (int x = 0; x + box <= block.width; x += box) {
           const MappedLight light = mean_light(stored, {x, y, box, box});
+          if (std::isnan(light.irradiance[0])) continue;  // a hole is in it
           for (size_t a = 0; a < kAlbedos; ++a)
             errors[a].add(std::abs(
                 bounce_map_irradiance(light.visibility, light.bounce, kBounceMapAlbedos[a], bounce_albedo) -
@@ -108,7 +109,7 @@ void add_block(const LightBlock& block, double bounce_albedo, PieceSums& sums) {
 void sum_rows(const Bake& bake, int first_row, int end_row, PieceSums& sums) {
   const LightOfTexel light = [&](size_t texel) {
     const double off = irradiance_by_bounces(bake, texel, bake.bounce_albedo) - bounce_at(bake, texel);
-    sums.truth_squares += off * off;
+    if (!is_hole(bake, texel)) sums.truth_squares += off * off;
     return mapped_light_at(bake, texel);
   };
   for (int y = first_row; y < end_row; y += kBounceMapBlock)
@@ -119,7 +120,7 @@ void sum_rows(const Bake& bake, int first_row, int end_row, PieceSums& sums) {
 BounceMapLoss loss_of(const Bake& bake, const PieceSums& sums) {
   BounceMapLoss loss;
   loss.bounce_albedo = bake.bounce_albedo;
-  loss.truth_rms = std::sqrt(sums.truth_squares / static_cast<double>(bake.bounce.size()));
+  loss.truth_rms = std::sqrt(sums.truth_squares / static_cast<double>(sums.errors[0][0].count));
   size_t s = 0;
   for (const int bits : kBits)
     for (const int box : kBoxes) {

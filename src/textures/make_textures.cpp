@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -65,15 +67,29 @@ bool completes_bounce_map(const TextureSettings& settings, TextureKind kind) {
          !settings.wants(TextureKind::kBounceMap);
 }
 
+// Takes the values of holes away: NaN where the format has it, else 0 and, in a texture without alpha, alpha
+// 0.
+void clear_holes(const Grid<uint8_t>& holes, const TextureCoding& coding, std::vector<Layer>& layers) {
+  if (holes.empty()) return;
+  const bool is_float = texture_format_info(coding.format).is_float;
+  const float none = is_float ? std::numeric_limits<float>::quiet_NaN() : 0;
+  if (!is_float && layers.size() < 4) layers.push_back({"A", Grid<float>(holes.width, holes.height, 1)});
+  for (Layer& layer : layers)
+    for (size_t i = 0; i < holes.size(); ++i)
+      if (holes[i] != 0) layer.values[i] = none;
+}
+
 ChannelRange range_of(const Layer& layer) {
-  const double first = layer.values[0];
-  ChannelRange range{layer.channel, first, 0, first};
+  ChannelRange range{layer.channel, HUGE_VAL, 0, -HUGE_VAL};
+  size_t count = 0;
   for (const float value : layer.values.values) {
+    if (std::isnan(value)) continue;
+    ++count;
     range.low = std::min(range.low, static_cast<double>(value));
     range.high = std::max(range.high, static_cast<double>(value));
     range.mean += static_cast<double>(value);
   }
-  range.mean /= static_cast<double>(layer.values.size());
+  range.mean /= static_cast<double>(count);
   return range;
 }
 
@@ -96,9 +112,9 @@ void record_texture_settings(const TextureSettings& settings, TextureKind kind, 
 
 std::vector<WrittenTexture> make_textures(const TextureSource& source, const Provenance& provenance,
                                           const TextureSettings& settings,
-                                          const std::filesystem::path& folder, const std::string& name,
-                                          const Grid<uint8_t>& holes) {
+                                          const std::filesystem::path& folder, const std::string& name) {
   const Bake& bake = source.bake;
+  const Grid<uint8_t> holes = holes_of(bake);
   check_planes(bake, settings);
   const PackedInputs packed = read_packed_inputs(settings, bake.width, bake.height);
   const std::vector<std::filesystem::path> paths = texture_paths(settings, folder, name);
@@ -111,6 +127,7 @@ std::vector<WrittenTexture> make_textures(const TextureSource& source, const Pro
                                                  : make_layers(bake, settings, kind, packed);
     if (chooses_steps(bake, settings, kind)) store_chosen(*chosen, kind, layers);
     WrittenTexture texture{kind, paths[t], describe_texture(bake, settings, kind), {}, {}};
+    clear_holes(holes, settings.coding, layers);
     if (completes_bounce_map(settings, kind)) texture.bounce_map = bounce_map_loss(bake);
     std::vector<Plane> planes;
     for (const Layer& layer : layers) {

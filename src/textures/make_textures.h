@@ -40,11 +40,10 @@ void record_texture_settings(const TextureSettings& settings, TextureKind kind, 
 // Writes every texture of the settings, all or none. source: a bake with the planes of
 // bake_only_what_textures_need (planes.h), or more. provenance: how the bake was made. settings: resolved.
 // name: what the files' names begin with. A TIFF of a bake that records a place on the earth is a GeoTIFF
-// there. holes: texels that have no value; NoData in a GeoTIFF; empty: none. Throws InputError as
-// check_planes and read_packed_inputs, and where a file cannot be written.
+// there. Holes of the bake are NoData in a GeoTIFF, NaN in other floats, and 0 with alpha 0 in a PNG that has
+// room for it. Throws InputError as check_planes and read_packed_inputs, and where a file cannot be written.
 std::vector<WrittenTexture> make_textures(const TextureSource& source, const Provenance& provenance,
                                           const TextureSettings& settings,
-                                          const std::filesystem::path& folder, const std::string& name,
-                                          const Grid<uint8_t>& holes = {});
+                                          const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace hemibake

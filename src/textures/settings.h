@@ -50,7 +50,7 @@ struct TextureSettings {
   BentLength bent_length = BentLength::kUnit;
   std::vector<double> albedo = {0.5};               // of the irradiance: one, or R, G and B
   int horizon_azimuths = 36;                        // channels of the horizon, as in "horizon:36"
-  int azimuths = 64;                                // of the sky-view factor and the openness
+  int azimuths = 128;                               // of the sky-view factor and the openness
   std::optional<double> radius_m;                   // terrain beyond does not count; absent: no limit
   bool curvature = false;                           // of the earth lowers far terrain
   std::vector<std::string> suffix_words;            // as given: "visibility=_AO"

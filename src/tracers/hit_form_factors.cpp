@@ -75,6 +75,24 @@ void merge_few(std::vector<FormFactor>& form_factors) {
   for (size_t i = 0; i < count; ++i) form_factors[i] = {sums[i].patch, static_cast<float>(sums[i].weight)};
 }
 
+// Spreads the form factors of a hit from `begin` on that lead to a hole over the others. The facet's own
+// corners are none, but the fourth of its cell may be.
+void leave_out_holes(const Surface& surface, const FacetHit& hit, size_t begin,
+                     std::vector<FormFactor>& form_factors) {
+  const auto first = form_factors.begin() + static_cast<std::ptrdiff_t>(begin);
+  const auto last = std::remove_if(first, form_factors.end(),
+                                   [&](const FormFactor& link) { return surface.is_hole(link.patch); });
+  if (last == form_factors.end()) return;
+  form_factors.erase(last, form_factors.end());
+  const glm::ivec2 corner = facet_corners(surface, hit.facet).texel[1];
+  if (form_factors.size() == begin) return add_texel(surface, corner.x, corner.y, hit.weight, form_factors);
+  double left = 0;
+  for (size_t i = begin; i < form_factors.size(); ++i) left += static_cast<double>(form_factors[i].weight);
+  for (size_t i = begin; i < form_factors.size(); ++i)
+    form_factors[i].weight =
+        static_cast<float>(static_cast<double>(form_factors[i].weight) * hit.weight / left);
+}
+
 }  // namespace
 
 void add_nearest_form_factor(const Surface& surface, glm::dvec2 position, double weight,
@@ -114,6 +132,7 @@ void add_node_form_factors(const PatchSet& patch_set, const FacetHit& hit, doubl
 
 void add_form_factors(const Surface& surface, const PatchSet& patch_set, TexelLinks texel_links,
                       const FacetHit& hit, double u, std::vector<FormFactor>& form_factors) {
+  const size_t before = form_factors.size();
   if (patch_set.kind == PatchKind::kFacets) {
     add_node_form_factors(patch_set, hit, u, form_factors);
   } else if (texel_links == TexelLinks::kNearest) {
@@ -123,6 +142,8 @@ void add_form_factors(const Surface& surface, const PatchSet& patch_set, TexelLi
     add_bilinear_form_factors(surface, facet_point_texels(surface, hit.facet, hit.uv), hit.weight,
                               form_factors);
   }
+  if (patch_set.kind == PatchKind::kTexels && !surface.holes.empty())
+    leave_out_holes(surface, hit, before, form_factors);
 }
 
 void add_own_form_factor(const Surface& surface, const PatchSet& patch_set, uint32_t receiver, bool is_patch,

@@ -15,9 +15,9 @@ ordered_json json_of(const PlaneValues& values) {
   return json;
 }
 
-PlaneValues plane_values_from(const ordered_json& json) {
+PlaneValues plane_values_from(const JsonReader& json) {
   PlaneValues values{};
-  for (size_t p = 0; p < kPlaneCount; ++p) values[p] = json.at(named_planes()[p].name);
+  for (size_t p = 0; p < kPlaneCount; ++p) values[p] = json.at(named_planes()[p].name).number();
   return values;
 }
 
@@ -25,8 +25,9 @@ ordered_json json_of(const ErrorStatistics& error) {
   return {{"rmse", error.rmse}, {"bias", error.bias}, {"max", error.largest}, {"p99", error.p99}};
 }
 
-ErrorStatistics statistics_from(const ordered_json& json) {
-  return {json.at("rmse"), json.at("bias"), json.at("max"), json.at("p99")};
+ErrorStatistics statistics_from(const JsonReader& json) {
+  return {json.at("rmse").number(), json.at("bias").number(), json.at("max").number(),
+          json.at("p99").number()};
 }
 
 ordered_json json_of(const PlaneErrors& errors) {
@@ -36,11 +37,10 @@ ordered_json json_of(const PlaneErrors& errors) {
   return json;
 }
 
-PlaneErrors plane_errors_from(const ordered_json& json) {
+PlaneErrors plane_errors_from(const JsonReader& json) {
   PlaneErrors errors;
   for (size_t p = 0; p < kPlaneCount; ++p)
-    if (const auto found = json.find(named_planes()[p].name); found != json.end())
-      errors[p] = statistics_from(*found);
+    if (const auto found = json.find(named_planes()[p].name)) errors[p] = statistics_from(*found);
   return errors;
 }
 
@@ -54,12 +54,13 @@ ordered_json json_of(const std::optional<CurveErrors>& curves) {
   return json;
 }
 
-std::optional<CurveErrors> curve_errors_from(const ordered_json& json) {
-  if (json.empty()) return std::nullopt;
+std::optional<CurveErrors> curve_errors_from(const JsonReader& json) {
+  if (json.members().empty()) return std::nullopt;
   CurveErrors curves;
   for (size_t c = 0; c < kCurveNames.size(); ++c) {
-    const ordered_json& curve = json.at(kCurveNames[c]);
-    curves[c] = {curve.at("bias"), curve.at("rms"), curve.at("max"), curve.at("bins")};
+    const JsonReader curve = json.at(kCurveNames[c]);
+    curves[c] = {curve.at("bias").number(), curve.at("rms").number(), curve.at("max").number(),
+                 curve.at("bins").whole<int>()};
   }
   return curves;
 }
@@ -72,9 +73,9 @@ ordered_json json_of(const std::vector<LightModelErrors>& models) {
   return json;
 }
 
-std::vector<LightModelErrors> light_model_errors_from(const ordered_json& json) {
+std::vector<LightModelErrors> light_model_errors_from(const JsonReader& json) {
   std::vector<LightModelErrors> models;
-  for (const auto& [name, errors] : json.items()) {
+  for (const auto& [name, errors] : json.members()) {
     LightModelErrors& model = models.emplace_back(LightModelErrors{name, {}});
     for (size_t a = 0; a < kJudgedAlbedos.size(); ++a)
       model.error[a] = statistics_from(errors.at(named_planes()[kLightPlanes + a].name));
@@ -91,12 +92,14 @@ ordered_json json_of(const FittedModels& models) {
   return json;
 }
 
-FittedModels fitted_models_from(const ordered_json& json) {
+FittedModels fitted_models_from(const JsonReader& json) {
   FittedModels models;
-  if (const auto& m = json.at("eq12-refitted"); !m.is_null())
-    models.eq12 = Mayaux2018Model{m.at("k"), m.at("e"), m.at("A"), m.at("B")};
-  if (const auto& m = json.at("bounded"); !m.is_null())
-    models.bounded = BoundedModel{m.at("k0"), m.at("k1"), m.at("q"), m.at("d")};
+  const JsonReader eq12 = json.at("eq12-refitted"), bounded = json.at("bounded");
+  const auto of = [](const JsonReader& model, const char* name) { return model.at(name).number(); };
+  if (!eq12.is_null())
+    models.eq12 = Mayaux2018Model{of(eq12, "k"), of(eq12, "e"), of(eq12, "A"), of(eq12, "B")};
+  if (!bounded.is_null())
+    models.bounded = BoundedModel{of(bounded, "k0"), of(bounded, "k1"), of(bounded, "q"), of(bounded, "d")};
   return models;
 }
 
@@ -112,27 +115,30 @@ ordered_json json_of(const std::vector<RefereeRow>& rows) {
   return json;
 }
 
-std::vector<RefereeRow> referee_rows_from(const ordered_json& json) {
+std::vector<RefereeRow> referee_rows_from(const JsonReader& json) {
   std::vector<RefereeRow> rows;
-  for (const ordered_json& entry : json) {
+  for (const JsonReader& entry : json.elements()) {
     RefereeRow& row = rows.emplace_back();
-    row.quantity = entry.at("quantity");
-    row.bake_mean = entry.at("reference");
-    row.referee_mean = entry.at("referee");
-    row.bias = entry.at("bias");
-    row.half_width = entry.at("half_width");
-    row.texels = entry.at("texels");
+    row.quantity = entry.at("quantity").text();
+    row.bake_mean = entry.at("reference").number();
+    row.referee_mean = entry.at("referee").number();
+    row.bias = entry.at("bias").number();
+    row.half_width = entry.at("half_width").number();
+    row.texels = entry.at("texels").whole<size_t>();
   }
   return rows;
 }
 
-std::vector<Setting> settings_from(const ordered_json& json) {
+std::vector<Setting> settings_from(const JsonReader& json) {
   std::vector<Setting> settings;
-  for (const auto& [name, value] : json.items()) {
-    Setting& setting =
-        settings.emplace_back(Setting{name, value.is_string() ? value.get<std::string>() : ""});
-    if (value.is_number_float()) setting.value = value.get<double>();
-    if (value.is_number_integer()) setting.value = value.get<int>();
+  for (const auto& [name, value] : json.members()) {
+    Setting& setting = settings.emplace_back(Setting{name, ""});
+    if (value.is_whole())
+      setting.value = value.whole<int>();
+    else if (value.is_number())
+      setting.value = value.number();
+    else
+      setting.value = value.text();
   }
   return settings;
 }
@@ -165,23 +171,25 @@ void to_json(ordered_json& json, const ReferenceFacts& facts) {
           {"models_on_true_ao", json_of(facts.models_on_true_ao)}};
 }
 
-void from_json(const ordered_json& json, ReferenceFacts& facts) {
-  facts.width = json.at("width");
-  facts.height = json.at("height");
-  facts.can_halve = json.at("can_halve");
-  facts.height_range_m = json.at("height_range_m");
-  facts.texel_size_m = json.at("texel_size_m");
-  facts.bounces = json.at("bounces");
-  facts.azimuths_ao = json.at("azimuths_ao");
+ReferenceFacts reference_facts_from(const JsonReader& json) {
+  ReferenceFacts facts;
+  facts.width = json.at("width").whole<decltype(facts.width)>();
+  facts.height = json.at("height").whole<decltype(facts.height)>();
+  facts.can_halve = json.at("can_halve").flag();
+  facts.height_range_m = json.at("height_range_m").number();
+  facts.texel_size_m = json.at("texel_size_m").number();
+  facts.bounces = json.at("bounces").whole<decltype(facts.bounces)>();
+  facts.azimuths_ao = json.at("azimuths_ao").whole<decltype(facts.azimuths_ao)>();
   facts.error = plane_values_from(json.at("error"));
   facts.best_run_error = plane_values_from(json.at("best_run_error"));
-  facts.azimuths_light = json.at("azimuths_light");
-  facts.seeds_light = json.at("seeds_light");
+  facts.azimuths_light = json.at("azimuths_light").whole<decltype(facts.azimuths_light)>();
+  facts.seeds_light = json.at("seeds_light").whole<decltype(facts.seeds_light)>();
   facts.mean = plane_values_from(json.at("mean"));
   facts.referee = referee_rows_from(json.at("referee"));
   facts.models = fitted_models_from(json.at("models"));
-  facts.cpu_seconds = json.at("cpu_seconds");
+  facts.cpu_seconds = json.at("cpu_seconds").number();
   facts.models_on_true_ao = light_model_errors_from(json.at("models_on_true_ao"));
+  return facts;
 }
 
 void to_json(ordered_json& json, const ScoredRun& run) {
@@ -203,22 +211,24 @@ void to_json(ordered_json& json, const ScoredRun& run) {
           {"models", json_of(run.models)}};
 }
 
-void from_json(const ordered_json& json, ScoredRun& run) {
-  run.method = json.at("method");
+ScoredRun scored_run_from(const JsonReader& json) {
+  ScoredRun run;
+  run.method = json.at("method").text();
   run.settings = settings_from(json.at("settings"));
-  run.series = json.at("series");
-  run.abscissa_name = json.at("abscissa");
-  run.abscissa = json.at("abscissa_value");
-  run.representative = json.at("representative");
-  run.cost.cpu_seconds = json.at("cpu_seconds");
-  run.cost.wall_seconds = json.at("wall_seconds");
-  run.cost.repeats = json.at("repeats");
-  run.cost.memory_bytes = json.at("memory_bytes");
-  run.work = json.at("work");
-  run.known = json.at("known");
+  run.series = json.at("series").text();
+  run.abscissa_name = json.at("abscissa").text();
+  run.abscissa = json.at("abscissa_value").number();
+  run.representative = json.at("representative").flag();
+  run.cost.cpu_seconds = json.at("cpu_seconds").number();
+  run.cost.wall_seconds = json.at("wall_seconds").number();
+  run.cost.repeats = json.at("repeats").whole<decltype(run.cost.repeats)>();
+  run.cost.memory_bytes = json.at("memory_bytes").whole<decltype(run.cost.memory_bytes)>();
+  run.work = json.at("work").whole<decltype(run.work)>();
+  run.known = json.at("known").number();
   run.error = plane_errors_from(json.at("error"));
   run.curve = curve_errors_from(json.at("curve"));
   run.models = light_model_errors_from(json.at("models"));
+  return run;
 }
 
 }  // namespace hemibake

@@ -7,6 +7,7 @@
 #include "core/context.h"
 #include "core/error.h"
 #include "core/progress.h"
+#include "io/json_text.h"
 #include "io/table_io.h"
 #include "trade/child_process.h"
 #include "trade/error_picture.h"
@@ -38,27 +39,34 @@ ordered_json study_key(const StudyOptions& options) {
 
 // Returns the result on record under this key; none where it cannot be read.
 template <class Result>
-std::optional<Result> find_record(const fs::path& path, const ordered_json& key) {
+std::optional<Result> find_record(const fs::path& path, const ordered_json& key,
+                                  Result (*from)(const JsonReader&)) {
   if (!fs::is_regular_file(path)) return std::nullopt;
   try {
     const ordered_json record = read_json(path);
-    if (record.at("key") == key) return record.at("result").get<Result>();
+    if (record.is_object() && record.value("key", ordered_json()) == key)
+      return from(JsonReader(record, path.string()).at("result"));
   } catch (const InputError&) {
-  } catch (const ordered_json::exception&) {
   }
   return std::nullopt;
 }
 
+struct RecordPlace {
+  fs::path path;
+  std::string what;  // of the errors of a child
+};
+
 // Returns the result of `work`, done in a child unless it is on record already.
+// from: reads it back.
 template <class Result>
-Result recorded(const fs::path& path, const ordered_json& key, const std::string& what, size_t& made_now,
-                const std::function<Result()>& work) {
-  if (const std::optional<Result> found = find_record<Result>(path, key)) return *found;
-  const std::string text = run_in_child(what, [&work] { return ordered_json(work()).dump(); });
-  const ordered_json result = ordered_json::parse(text);
-  write_json(path, {{"key", key}, {"result", result}});
+Result recorded(const RecordPlace& place, const ordered_json& key, size_t& made_now,
+                Result (*from)(const JsonReader&), const std::function<Result()>& work) {
+  if (const std::optional<Result> found = find_record(place.path, key, from)) return *found;
+  const std::string text = run_in_child(place.what, [&work] { return ordered_json(work()).dump(); });
+  const ordered_json result = parse_json(text, place.what);
+  write_json(place.path, {{"key", key}, {"result", result}});
   ++made_now;
-  return result.get<Result>();
+  return from(JsonReader(result, place.what));
 }
 
 ReferenceFacts make_reference_files(const StudyOptions& options) {
@@ -95,8 +103,9 @@ Study run_study(const StudyOptions& options) {
   forget_reference_without_planes(options, reference_record);
 
   Study study;
-  study.reference = recorded<ReferenceFacts>(reference_record, key, "reference", study.made_now,
-                                             [&options] { return make_reference_files(options); });
+  study.reference =
+      recorded<ReferenceFacts>({reference_record, "reference"}, key, study.made_now, reference_facts_from,
+                               [&options] { return make_reference_files(options); });
   for (const char* name : {"runs", "planes", "errors"}) fs::create_directories(options.folder / name);
   const std::vector<TradeRun> sweep = make_sweep(options.reference.effort, study.reference.can_halve);
   Progress progress("trade", sweep.size(), "run");
@@ -106,7 +115,7 @@ Study run_study(const StudyOptions& options) {
     key["method"] = run.method;
     key["settings"] = json_from_settings(run.settings);
     const fs::path record = options.folder / "runs" / (run.id() + ".json");
-    study.runs.push_back(recorded<ScoredRun>(record, key, run.id(), study.made_now,
+    study.runs.push_back(recorded<ScoredRun>({record, run.id()}, key, study.made_now, scored_run_from,
                                              [&] { return make_run(options, run, study.reference.models); }));
     progress.advance(1);
   }

@@ -1,6 +1,8 @@
 // The planes of a finished bake, as in BAKE.exr. Planes that were not asked for are empty.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -8,6 +10,7 @@
 
 namespace hemibake {
 
+// Texels that are holes of the surface have no values: NaN in every plane.
 struct Bake {
   int width = 0;
   int height = 0;
@@ -21,5 +24,17 @@ struct Bake {
   Grid<glm::vec3> normals;              // channels `normal.X/Y/Z`
   Grid<glm::vec3> bent_normals;         // channels `bent.X/Y/Z`
 };
+
+// Returns whether a texel is a hole: none of its planes has a number. A bake without planes has no holes.
+bool is_hole(const Bake& bake, size_t texel);
+
+// Returns which texels are holes, 1; empty where none is.
+Grid<uint8_t> holes_of(const Bake& bake);
+
+// Takes the values of holes away. holes: of the bake's size; empty: none.
+void clear_holes(const Grid<uint8_t>& holes, Bake& bake);
+
+// Gives holes the values of flat open ground, for what needs a number in every texel.
+void show_holes_as_open_ground(Bake& bake);
 
 }  // namespace hemibake

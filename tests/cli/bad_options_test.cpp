@@ -62,13 +62,13 @@ TEST_F(BadOptions, OfABake) {
 
 TEST_F(BadOptions, TexelsOffTheMap) {
   const std::string line = "map.png: there is no texel 8,0, expected 0,0 to 7,7";
-  expect_refusal("bake map.png --texel 8,0", line);
-  expect_refusal("bake map.png --texel 0,8", HasSubstr("there is no texel 0,8"));
+  expect_refusal("bake map.png --replay 8,0", line);
+  expect_refusal("bake map.png --replay 0,8", HasSubstr("there is no texel 0,8"));
   for (const std::string value : {"-1,0", "0,a", "99999999999,0"})
-    expect_refusal("bake map.png --texel " + value,
-                   AllOf(StartsWith("--texel: "), HasSubstr("expected a whole number")));
+    expect_refusal("bake map.png --replay " + value,
+                   AllOf(StartsWith("--replay: "), HasSubstr("expected a whole number")));
   for (const std::string value : {"1", "1,2,3"})
-    expect_refusal("bake map.png --texel " + value, StartsWith("--texel: "));
+    expect_refusal("bake map.png --replay " + value, StartsWith("--replay: "));
 }
 
 TEST_F(BadOptions, CombinationsOfABake) {
@@ -76,6 +76,10 @@ TEST_F(BadOptions, CombinationsOfABake) {
   expect_refusal("run map.png -o results --outputs ao,bent",
                  AllOf(StartsWith("--outputs: "), HasSubstr("expected")));
   expect_refusal("bake map.png", AllOf(StartsWith("--output: "), HasSubstr("expected")));
+  expect_refusal(
+      "bake map.png --texel 5,7",
+      "--texel is the width of a texel in metres, expected -o BAKE.exr with it; --replay X,Y prints what "
+      "one texel sees");
 }
 
 TEST_F(BadOptions, MemoryIsRefusedBeforeTheWork) {
@@ -107,7 +111,8 @@ TEST_F(BadOptions, UnknownMissingAndDouble) {
   expect_refusal("bake map.png -o bake.exr --size ''",
                  StartsWith("--size: is followed by an empty argument"));
   expect_refusal("bake map.png -o bake.exr --albedo 1", HasSubstr("--albedo"));
-  expect_refusal("bake map.png other.png -o bake.exr", HasSubstr("--output: bake.exr is one file, expected a folder"));
+  expect_refusal("bake map.png other.png -o bake.exr",
+                 HasSubstr("--output: bake.exr is one file, expected a folder"));
   expect_refusal("bake map.png -o bake.exr --size 1 --size 2", HasSubstr("--size"));
   expect_refusal("bake map.png -o bake.exr --size", HasSubstr("--size"));
   expect_refusal("bake -o bake.exr", HasSubstr("MAP"));

@@ -2,6 +2,7 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -59,7 +60,7 @@ TEST_F(BadResults, BakesThatCannotBe) {
   run_well("check bake.exr");
   write_changed("bright.exr", [](BakeFile& file) {
     for (auto& plane : file.bake.irradiance)
-      for (float& value : plane.values) value *= 1.1f;
+      for (float& value : plane.values) value = std::min(1.1f * value, 3.14f);
   });
   expect_failed_check("bright.exr", "stored bounces above the sum");
   write_changed("dark.exr", [](BakeFile& file) {
@@ -85,6 +86,52 @@ TEST_F(BadResults, AttributesThatAreNone) {
     expect_refusal("check odd.exr",
                    AllOf(StartsWith("odd.exr: attribute hemibake:" + name + " is \"soon\", expected")));
   }
+}
+
+// What a bake records passes what the command line passes.
+TEST_F(BadResults, RecordedOptionsOutOfRange) {
+  make_bake();
+  const auto expect_bad = [&](const std::string& key, const nlohmann::ordered_json& value) {
+    write_changed("odd.exr", [&](BakeFile& file) { file.provenance[key] = value; });
+    expect_refusal("render odd.exr -o out --sun 30,40,1 --pictures light",
+                   AllOf(StartsWith("odd.exr: "), HasSubstr(key.substr(0, key.find('_')))));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out/render.json"));
+  };
+  expect_bad("rays", 0);
+  expect_bad("rays", -3);
+  expect_bad("rays", 1e300);
+  expect_bad("rays", 2000000000);
+  expect_bad("rays", "many");
+  expect_bad("rays", true);
+  expect_bad("cone_degrees", -1e9);
+  expect_bad("cone_degrees", 0.0);
+  expect_bad("seed", -1);
+  expect_bad("seed", 0.5);
+  expect_bad("size_m", 0);
+  expect_bad("size_m", -1.0);
+  expect_bad("amplitude_m", -1e30);
+  expect_bad("filter_radius", -5);
+  expect_bad("filter_radius", 4000);
+  expect_bad("tracer", "x");
+  expect_bad("edge", "x");
+  expect_bad("patches", "");
+  expect_bad("outputs", "ao,x");
+  expect_bad("bounces", -1);
+  expect_bad("bounce_albedo", 1);
+  expect_bad("normals", "of nothing");
+}
+
+TEST_F(BadResults, RecordedOptionsThatExcludeEachOther) {
+  make_bake();
+  write_changed("odd.exr", [](BakeFile& file) {
+    file.provenance["tracer"] = "march";
+    for (const char* key : {"max_steps", "lift_percent"}) file.provenance[key] = 1;
+    for (const char* key : {"ray_set", "lookup"}) file.provenance[key] = "published";
+    file.provenance["normalize"] = "exact";
+    file.provenance["normal_length"] = "unit";
+  });
+  expect_refusal("render odd.exr -o out --sun 30,40,1 --pictures light",
+                 StartsWith("odd.exr: what it records goes not together: patches: a march knows no facets"));
 }
 
 TEST_F(BadResults, BakesWithNaN) {
@@ -132,6 +179,9 @@ TEST_F(BadResults, HostileFits) {
   expect_bad("{\"F0\": {\"model\": 1}}");
   expect_bad("{\"F0\": null");
   expect_bad(std::string(1000000, '['));
+  expect_bad("{}");
+  expect_bad(R"({"provenance": {}})");
+  expect_bad("{\"provenance\":" + std::string(1000000, '[') + std::string(1000000, ']') + "}");
   write_bytes(folder_ / "f.txt", "{}");
   expect_refusal("check f.txt", StartsWith("f.txt: nothing to check by that name, expected"));
   expect_refusal("check none.json", StartsWith("none.json: could not read"));

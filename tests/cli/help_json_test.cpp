@@ -17,12 +17,12 @@ struct CommandHelp {
 
 // Options that scripts rely on: their names are a contract.
 const std::vector<const char*> kBakeOptions = {
-    "--channel", "--size",  "--amplitude", "--normals", "--normal-y", "--normals-from", "--edge",
-    "--tracer",  "--rays",  "--cone",      "--bounces", "--converge", "--max-bounces",  "--max-distance",
-    "--patches", "--links", "--outputs",   "--memory",  "--seed"};
+    "--channel",      "--size",    "--texel", "--amplitude", "--normals", "--normal-y", "--normals-from",
+    "--edge",         "--tracer",  "--rays",  "--cone",      "--bounces", "--converge", "--max-bounces",
+    "--max-distance", "--patches", "--links", "--outputs",   "--memory",  "--seed"};
 const std::vector<CommandHelp> kCommands = {
     {"synth", {"--width", "--height", "--seed", "--angle"}},
-    {"bake", {"--texel", "--dry-run"}},
+    {"bake", {"--replay", "--dry-run"}},
     {"curves", {"--bins"}},
     {"fit", {"--model", "--abscissa", "--weights"}},
     {"render", {"--albedo", "--sky", "--sun", "--exposure", "--links", "--fit"}},
@@ -76,7 +76,7 @@ class JsonOutput : public CliTest {};
 TEST_F(JsonOutput, IsOneObjectOfEveryCommand) {
   EXPECT_EQ(run_json("synth bricks --width 48 --height 48 -o map.exr").at("width"), 48);
   EXPECT_GT(run_json("bake map.exr --dry-run").at("memory_bytes"), 0);
-  EXPECT_EQ(run_json("bake map.exr --texel 5,7 --rays 16").at("texel"), nlohmann::json({5, 7}));
+  EXPECT_EQ(run_json("bake map.exr --replay 5,7 --rays 16").at("texel"), nlohmann::json({5, 7}));
   const nlohmann::json bake = run_json("bake map.exr -o bake.exr --rays 64 --converge 1e-3 --max-bounces 20");
   EXPECT_GT(bake.at("rays_traced"), 0);
   // Warnings are for people too, so they go to standard error.

@@ -1,6 +1,4 @@
 // Interruption by Ctrl-C and SIGTERM in the middle of the work: exit code 130, no file left behind.
-#include <fmt/format.h>
-
 #include "cli/run_hemibake.h"
 
 namespace hemibake {
@@ -8,13 +6,10 @@ namespace {
 
 class Interrupt : public CliTest {
  protected:
-  // Sends `signal` once to work that would take minutes, after it has begun. A second one would kill
-  // (--foreground: timeout would send it to its process group as well).
+  // Sends `signal` once to work that would take minutes, after it has begun. A second one would kill.
   void expect_clean_end(const std::string& arguments, const std::string& signal) const {
     const auto files = listing();
-    const CommandResult result = run_shell(fmt::format(
-        "cd '{}' && exec timeout --foreground --preserve-status --signal {} 1.5 '{}' {} --threads 1",
-        folder_.path().string(), signal, HEMIBAKE_BINARY, arguments));
+    const CommandResult result = run_interrupted(arguments, signal);
     EXPECT_EQ(result.exit_code, 130) << arguments;
     EXPECT_EQ(result.standard_output, "");
     EXPECT_EQ(result.standard_error, "hemibake: interrupted, no file was left half written\n");

@@ -63,7 +63,7 @@ class Replay : public CliTest {
     run_well("bake map.exr -o bake.exr " + options);
     const Bake bake = read_bake(folder_ / "bake.exr").bake;
     for (const auto& [x, y] : {std::pair{0, 0}, {31, 23}, {13, 7}}) {
-      const nlohmann::json texel = run_json(fmt::format("bake map.exr --texel {},{} {}", x, y, options));
+      const nlohmann::json texel = run_json(fmt::format("bake map.exr --replay {},{} {}", x, y, options));
       double cosine_sum = 0, sky = 0, uniform_sum = 0, uniform_sky = 0, links = 0;
       for (const auto& ray : texel.at("rays")) {
         const double cosine = ray.at("cosine_weight"), uniform = ray.at("uniform_weight");

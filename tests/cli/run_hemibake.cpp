@@ -38,6 +38,17 @@ CommandResult CliTest::run(const std::string& arguments, const std::string& befo
       fmt::format("cd '{}' && {} exec '{}' {}", folder_.path().string(), before, HEMIBAKE_BINARY, arguments));
 }
 
+CommandResult CliTest::run_interrupted(const std::string& arguments, const std::string& signal) const {
+  // Fields 14 and 15 of /proc/PID/stat: processor time in user and system mode, in ticks.
+  return run_shell(
+      fmt::format("cd '{}' && {{ '{}' {} --threads 1 & }} && pid=$! && polls=600 && "
+                  "most=$(($(getconf CLK_TCK) * 3 / 2)) && "
+                  "while [ $polls -gt 0 ] && read -r line </proc/$pid/stat && set -- $line && "
+                  "[ $((${{14}} + ${{15}})) -lt $most ]; do polls=$((polls - 1)); sleep 0.1; done; "
+                  "kill -{} $pid; wait $pid",
+                  folder_.path().string(), HEMIBAKE_BINARY, arguments, signal));
+}
+
 CommandResult CliTest::run_well(const std::string& arguments) const {
   CommandResult result = run(arguments);
   EXPECT_EQ(result.exit_code, 0) << arguments << "\n" << result.standard_error;

@@ -35,6 +35,9 @@ class CliTest : public testing::Test {
 
   // before: shell commands to run first ("ulimit -f 8; ").
   CommandResult run(const std::string& arguments, const std::string& before = "") const;
+  // Runs hemibake on one thread and sends `signal` ("INT") once, when it has worked for 1.5 s of processor
+  // time however busy the machine is, or after 60 s.
+  CommandResult run_interrupted(const std::string& arguments, const std::string& signal) const;
   // Runs hemibake and expects success.
   CommandResult run_well(const std::string& arguments) const;
   // Returns the object that run_well prints with --json.

@@ -59,5 +59,19 @@ TEST_F(SameBytes, WithEveryInstructionSet) {
   EXPECT_THAT(unknown.standard_error, testing::HasSubstr("expected one of " + sets[0]));
 }
 
+// glibc chooses exp, pow and others by the processor; without FMA their last bits are others.
+TEST_F(SameBytes, OnAMachineWithoutFma) {
+  write_map("map.exr", SyntheticKind::kBricks, 64, 64);
+  const std::string without = "GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX2_Usable";
+  for (const std::string name : {"with", "without"}) {
+    const CommandResult result =
+        run("run map.exr --rays 32 -o " + name, name == "without" ? "export " + without + ";" : "");
+    ASSERT_EQ(result.exit_code, 0) << result.standard_error;
+  }
+  for (const std::string file : {"bake.exr", "curves.csv", "fit.json", "check.json"})
+    EXPECT_TRUE(read_bytes(folder_.path() / "with" / file) == read_bytes(folder_.path() / "without" / file))
+        << file;
+}
+
 }  // namespace
 }  // namespace hemibake

@@ -5,6 +5,7 @@
 #include "io/bake_file.h"
 #include "io/geo_read.h"
 #include "io/geo_testing.h"
+#include "io/image_io.h"
 
 namespace hemibake {
 namespace {
@@ -83,6 +84,24 @@ TEST_F(TerrainFiles, TexturesKeepThePlaceOfTheirMap) {
     const double value = std::stod(gdal(fmt::format("gdallocationinfo -valonly of_map/{}_ao.tif 7 2", map)));
     EXPECT_NEAR(value, bake.visible_fraction(7, south ? kGeoHeight - 3 : 2), 1e-6);
   }
+}
+
+TEST_F(TerrainFiles, BakesAreWrittenAsBands) {
+  gdal("gdal_translate -q -a_nodata -9999 a.tif place.tif");
+  run_well(fmt::format("bake place.tif -o b.exr --bounces 1{}", kQuick));
+  run_well(fmt::format("bake place.tif -o b.tif --bounces 1{}", kQuick));
+  expect_same_place("b.tif", "place.tif");
+  const Bake bake = read_bake(folder_ / "b.exr").bake;
+  const std::string value = gdal("gdallocationinfo -valonly -b 1 b.tif 7 2");
+  EXPECT_NEAR(std::stod(value), bake.visible_fraction(7, 2), 1e-6);
+  std::vector<std::string> names;
+  for (const auto& band : info("b.tif")["bands"]) names.push_back(band["description"]);
+  EXPECT_THAT(names, testing::IsSupersetOf({"ao", "visibility", "irradiance.00", "irradiance.01"}));
+  EXPECT_THAT(refusal("curves b.tif -o c.csv"), HasSubstr("b.tif: bakes are read from EXR"));
+  write_height_map(folder_ / "plain.exr", Grid<float>(8, 8, 0.5f), make_provenance("test"));
+  run_well("bake plain.exr -o plain_bake.tif --rays 4");
+  EXPECT_FALSE(info("plain_bake.tif").contains("geoTransform"));
+  EXPECT_EQ(info("plain_bake.tif")["bands"][0]["description"], "ao");
 }
 
 TEST_F(TerrainFiles, TheCommandForDegreesGivesAMapThatBakes) {

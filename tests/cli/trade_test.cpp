@@ -79,10 +79,7 @@ TEST_F(Trade, ErrorsAreTheSameAtAnyThreadCount) {
 
 TEST_F(Trade, StopsCleanlyAndGoesOn) {
   write_map("large.exr", SyntheticKind::kBricks, 256, 256);
-  const CommandResult stopped = run_shell(fmt::format(
-      "cd '{}' && exec timeout --foreground --preserve-status --signal INT 2 '{}' trade large.exr -o "
-      "large --threads 1",
-      folder_.path().string(), HEMIBAKE_BINARY));
+  const CommandResult stopped = run_interrupted("trade large.exr -o large", "INT");
   EXPECT_EQ(stopped.exit_code, 130);
   EXPECT_EQ(stopped.standard_error, "hemibake: interrupted, no file was left half written\n");
   // The reference alone takes longer than the limit: not even the folder is made.

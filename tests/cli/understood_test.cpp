@@ -113,7 +113,7 @@ TEST_F(Understood, MetresAreMetresWhateverTheirBitDepth) {
   for (const char* map : {"float.exr", "float.exr --amplitude 1", "int.tif", "int.tif --amplitude 1",
                           "uint.png --heights metres", "float.exr --heights metres"})
     expect_near_ao(fmt::format("{} --size 9600", map), expected, 2e-3);
-  expect_near_ao("int.tif --texel-size 300", expected, 2e-3);
+  expect_near_ao("int.tif --texel 300", expected, 2e-3);
   EXPECT_EQ(map_of("int.tif --size 9600").at("heights"), "metres");
   EXPECT_EQ(map_of("float.exr --size 9600").at("heights_because"), "floats that range over more than 2");
 }
@@ -158,8 +158,8 @@ TEST_F(Understood, TexelsThatAreNotSquareAreMadeSo) {
       square(x, j) = static_cast<float>(a + (y - below) * (b - a));
     }
   write_height_map(folder_ / "square.exr", square, make_provenance("test"));
-  const Grid<float> expected = ao("square.exr --texel-size 10");
-  const Grid<float> made = ao("oblong.exr --texel-size 10,30");
+  const Grid<float> expected = ao("square.exr --texel 10");
+  const Grid<float> made = ao("oblong.exr --texel 10,30");
   ASSERT_EQ(made.height, square.height);
   double sum = 0, squares = 0;
   for (size_t i = 0; i < made.size(); ++i) {
@@ -169,7 +169,7 @@ TEST_F(Understood, TexelsThatAreNotSquareAreMadeSo) {
   const auto count = static_cast<double>(made.size());
   EXPECT_LT(std::abs(sum / count), 1e-5);
   EXPECT_LT(std::sqrt(squares / count), 1e-4);
-  EXPECT_THAT(run_well("bake oblong.exr -o b.exr --texel-size 10,30 --rays 4 --outputs ao").standard_output,
+  EXPECT_THAT(run_well("bake oblong.exr -o b.exr --texel 10,30 --rays 4 --outputs ao").standard_output,
               HasSubstr("texels of 10 x 30 m, wrap, made square: 32 x 96"));
 }
 
@@ -199,13 +199,13 @@ TEST_F(Understood, LowAndHighAreTheHeightsOfBlackAndWhite) {
   expect_refusal("bake unit.exr -o x.exr --low 2", AllOf(HasSubstr("--low"), HasSubstr("--high")));
   expect_refusal("bake unit.exr -o x.exr --high 2 --amplitude 1",
                  HasSubstr("--high: is given with --amplitude"));
-  expect_refusal("bake unit.exr -o x.exr --size 2 --texel-size 1",
-                 HasSubstr("--texel-size: is given with --size"));
+  expect_refusal("bake unit.exr -o x.exr --size 2 --texel 1",
+                 HasSubstr("--texel: is given with --size"));
 }
 
 TEST_F(Understood, TexelSizeIsTheSizeOverTheTexels) {
   write_unit_map();
-  expect_near_ao("unit.exr --texel-size 0.0625", ao("unit.exr --size 2"), 0);
+  expect_near_ao("unit.exr --texel 0.0625", ao("unit.exr --size 2"), 0);
 }
 
 TEST_F(Understood, WhatStandsOutIsNamed) {
@@ -322,7 +322,7 @@ TEST_F(Understood, IsReadBackTheSame) {
   write<float>("wide.exr", {"Y"}, [](int x, int y) { return std::vector<double>{10 * relief(x, y)}; });
   write_normals("up.png", [](glm::dvec3 c) { return glm::dvec3(c.x, 1 - c.y, c.z); });
   for (const char* arguments :
-       {"unit.exr", "unit.exr --low 3 --high 1", "unit.exr --texel-size 0.3", "int.tif --size 700",
+       {"unit.exr", "unit.exr --low 3 --high 1", "unit.exr --texel 0.3", "int.tif --size 700",
         "wide.exr", "wide.exr --amplitude 0.3", "unit.exr --normals up.png --normal-y auto"}) {
     run_well(fmt::format("bake {} -o b.exr --rays 4 --outputs ao,normal", arguments));
     const BakeFile file = read_bake(folder_ / "b.exr");

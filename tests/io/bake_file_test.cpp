@@ -1,17 +1,20 @@
 #include "io/bake_file.h"
 
+#include <OpenImageIO/imageio.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <functional>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <random>
 
 #include "core/parallel.h"
-#include "support/threads.h"
 #include "io/image_io.h"
 #include "io/io_testing.h"
+#include "support/threads.h"
 
 namespace hemibake {
 namespace {
@@ -22,7 +25,7 @@ using testing::HasSubstr;
 Grid<float> random_plane(int width, int height, unsigned seed) {
   std::mt19937 random(seed);
   Grid<float> plane(width, height);
-  for (float& value : plane.values) value = static_cast<float>(random()) / 4.3e9f * 3.2f;
+  for (float& value : plane.values) value = static_cast<float>(random()) / 4.3e9f;
   return plane;
 }
 
@@ -30,6 +33,7 @@ Grid<glm::vec3> random_vectors(int width, int height, unsigned seed) {
   Grid<glm::vec3> plane(width, height);
   const Grid<float> values = random_plane(width * 3, height, seed);
   std::memcpy(&plane.values[0].x, values.values.data(), values.size() * sizeof(float));
+  for (glm::vec3& vector : plane.values) vector = glm::normalize(vector + 0.01f);
   return plane;
 }
 
@@ -72,7 +76,7 @@ TEST(BakeFile, RoundTripIsBitExact) {
   Bake bake = random_bake(37, 301, 21);
   bake.total[5] = -0.0f;
   bake.total[6] = std::numeric_limits<float>::denorm_min();
-  bake.total[7] = std::numeric_limits<float>::max();
+  bake.total[7] = 3.1415927f;
   write_bake(folder / "bake.exr", bake, sample_provenance());
   const BakeFile read = read_bake(folder / "bake.exr");
   expect_same_bits(read.bake.visible_fraction, bake.visible_fraction);
@@ -107,11 +111,12 @@ TEST(BakeFile, MoreThanAHundredBounces) {
   Bake bake;
   bake.width = 2;
   bake.height = 1;
-  for (int b = 0; b < 120; ++b) bake.irradiance.emplace_back(2, 1, static_cast<float>(b));
+  for (int b = 0; b < 120; ++b) bake.irradiance.emplace_back(2, 1, static_cast<float>(b) / 64);
   write_bake(folder / "bake.exr", bake, {{"version", "0"}});
   const Bake read = read_bake(folder / "bake.exr").bake;
   ASSERT_EQ(read.irradiance.size(), 120u);
-  for (int b = 0; b < 120; ++b) EXPECT_EQ(read.irradiance[static_cast<size_t>(b)][1], static_cast<float>(b));
+  for (int b = 0; b < 120; ++b)
+    EXPECT_EQ(read.irradiance[static_cast<size_t>(b)][1], static_cast<float>(b) / 64);
 }
 
 TEST(BakeFile, SameBytesEveryTimeAtAnyThreadCount) {
@@ -188,6 +193,59 @@ TEST(BakeFile, RefusesGapsAndHalves) {
   };
   EXPECT_THAT(refusal({"irradiance.00", "irradiance.02"}), HasSubstr("has no channel 'irradiance.01'"));
   EXPECT_THAT(refusal({"ao", "bent.X", "bent.Y"}), HasSubstr("has no channel 'bent.Z'"));
+}
+
+TEST(BakeFile, ValuesOutOfTheirRangeAreNamed) {
+  const TemporaryFolder folder;
+  const auto write = [&](const std::function<void(Bake&)>& change, const Provenance& provenance) {
+    Bake bake = random_bake(8, 6, 2);
+    bake.visibility = random_plane(8, 6, 9);
+    change(bake);
+    write_bake(folder / "odd.exr", bake, provenance);
+  };
+  const auto refusal = [&](const std::function<void(Bake&)>& change) {
+    write(change, {{"version", "0"}});
+    return error_of<InputError>([&] { read_bake(folder / "odd.exr"); });
+  };
+  EXPECT_THAT(refusal([](Bake& bake) { bake.visible_fraction(3, 2) = -5; }),
+              HasSubstr("odd.exr: channel ao is -5 at texel 3,2, expected -0.001 to 1.001"));
+  EXPECT_THAT(refusal([](Bake& bake) { bake.visibility(7, 5) = 1.5f; }),
+              HasSubstr("channel visibility is 1.5 at texel 7,5"));
+  const std::function<void(Bake&)> brighten = [](Bake& bake) { bake.irradiance[1](0, 1) = 3.2f; };
+  EXPECT_THAT(refusal(brighten), HasSubstr("channel irradiance.01 is 3.2 at texel 0,1"));
+  EXPECT_THAT(refusal([](Bake& bake) { bake.total[0] = -1; }), HasSubstr("channel total is -1"));
+  EXPECT_THAT(refusal([](Bake& bake) { bake.residual[0] = 2; }), HasSubstr("channel residual is 2"));
+  EXPECT_THAT(refusal([](Bake& bake) { bake.normals[4] *= 2; }), HasSubstr("channel normal has length 2"));
+  EXPECT_THAT(refusal([](Bake& bake) { bake.normals[4] *= 0; }), HasSubstr("channel normal has length 0"));
+  EXPECT_THAT(refusal([](Bake& bake) { bake.bent_normals[4] *= 2; }), HasSubstr("channel bent has length 2"));
+
+  write([](Bake& bake) { bake.bent_normals[4] = glm::vec3(0); }, {{"version", "0"}});
+  read_bake(folder / "odd.exr");  // a texel that sees no sky
+  write(brighten, {{"version", "0"}, {"normalize", "published"}});
+  EXPECT_EQ(read_bake(folder / "odd.exr").bake.irradiance[1](0, 1), 3.2f);
+}
+
+TEST(BakeFile, AttributesThatAreNoneAreNamed) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& text) {
+    const std::string path = (folder / "odd.exr").string();
+    const std::vector<float> texels(4, 0.5f);
+    OIIO::ImageSpec spec(2, 2, 1, OIIO::TypeDesc::FLOAT);
+    spec.channelnames = {"ao"};
+    spec.attribute("hemibake:provenance", text);
+    const auto output = OIIO::ImageOutput::create(path);
+    EXPECT_TRUE(output && output->open(path, spec) &&
+                output->write_image(OIIO::TypeDesc::FLOAT, texels.data()) && output->close());
+    return error_of<InputError>([&] { read_bake(path); });
+  };
+  const std::string at = "odd.exr: attribute hemibake:provenance";
+  EXPECT_THAT(refusal(R"({"input": 5})"), HasSubstr(at + ": input is 5, expected a text"));
+  EXPECT_THAT(refusal(R"({"rays": [5]})"),
+              HasSubstr(at + ": rays is a list of 1, expected a text, a number"));
+  EXPECT_THAT(refusal(R"({"rays": )"), HasSubstr(at + ": line 1, column "));
+  EXPECT_THAT(refusal("[]"), HasSubstr(at + " is a list of 0, expected an object"));
+  EXPECT_THAT(refusal("{\"a\":" + std::string(100000, '[') + std::string(100000, ']') + "}"),
+              HasSubstr(at + ": nests deeper than 64"));
 }
 
 TEST(BakeFile, CutShortAnywhereIsRefused) {

@@ -1,8 +1,9 @@
 #include "io/fit_file.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "core/error.h"
+#include "io/io_testing.h"
 
 namespace hemibake {
 namespace {
@@ -76,8 +77,38 @@ TEST(FitFile, WhatIsMissingIsNamed) {
     fits_from_json(json, "f.json");
     FAIL() << "unknown weights passed";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "f.json: F0: 'some', expected one of none, count, stderr");
+    EXPECT_STREQ(error.what(), "f.json: F0/weights: 'some', expected one of none, count, stderr");
   }
+}
+
+TEST(FitFile, WrongTypesAndSizesAreNamed) {
+  const auto refusal = [](const char* pointer, const nlohmann::ordered_json& value) {
+    nlohmann::ordered_json json = json_from_fits(make_example());
+    json[nlohmann::ordered_json::json_pointer(pointer)] = value;
+    return error_of<InputError>([&] { fits_from_json(json, "f.json"); });
+  };
+  using nlohmann::ordered_json;
+  EXPECT_EQ(refusal("/F0/points", 1e308),
+            "f.json: F0/points is 1e+308, expected a whole number from 0 to 2147483647");
+  for (const ordered_json& points :
+       {ordered_json(-1), ordered_json(0.5), ordered_json(UINT64_MAX), ordered_json("7")})
+    EXPECT_THAT(refusal("/F0/points", points), testing::HasSubstr("f.json: F0/points is "));
+  EXPECT_EQ(refusal("/F1/model", 5), "f.json: F1/model is 5, expected a text");
+  EXPECT_EQ(refusal("/F1/rms", -1), "f.json: F1/rms is -1, expected a number from 0");
+  EXPECT_EQ(refusal("/F1/rms", nullptr), "f.json: F1/rms is null, expected a number");
+  EXPECT_EQ(refusal("/F0/parameters/A/on_bound", 1),
+            "f.json: F0/parameters/A/on_bound is 1, expected true or false");
+  EXPECT_EQ(refusal("/F0/covariance", {{1.25}}),
+            "f.json: F0/covariance is a list of 1, expected a row for each of 2 parameters");
+  EXPECT_EQ(refusal("/F0/covariance", {{1, 2}, {3}}),
+            "f.json: F0/covariance/1 is a list of 1, expected a number for each of 2 parameters");
+  EXPECT_EQ(refusal("/F0/covariance", {{1, 2}, {3, "x"}}),
+            "f.json: F0/covariance/1/1 is \"x\", expected a number");
+  EXPECT_EQ(refusal("/provenance", ordered_json::array()),
+            "f.json: provenance is a list of 0, expected an object");
+  EXPECT_EQ(refusal("/provenance/input", 5), "f.json: provenance/input is 5, expected a text");
+  EXPECT_EQ(refusal("/maps", {{{"map", "m"}, {"mean_escape", 2}}}),
+            "f.json: maps/0/mean_escape is 2, expected a number from 0 to 1");
 }
 
 }  // namespace

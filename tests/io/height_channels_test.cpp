@@ -177,6 +177,70 @@ TEST_F(HeightChannels, NormalMapsAreRefused) {
   }
 }
 
+// Stores x in alpha and y in green (DXT5nm), with other red and blue.
+// rest: red and blue of a green.
+std::function<Doubles(int, int)> dxt5nm(double strength, const std::function<double(double)>& rest) {
+  return [=](int x, int y) {
+    const double dx = strength * (relief(x + 1, y) - relief(x - 1, y)) / 2;
+    const double dy = strength * (relief(x, y + 1) - relief(x, y - 1)) / 2;
+    const double length = std::sqrt(dx * dx + dy * dy + 1), green = 0.5 - 0.5 * dy / length;
+    return Doubles{rest(green), green, rest(green), 0.5 - 0.5 * dx / length};
+  };
+}
+
+TEST_F(HeightChannels, NormalMapsWithXInAlphaAreRefusedOrDoubted) {
+  for (const double strength : {3.0, 20.0}) {
+    for (const double constant : {0.0, 1 / 255.0, 1.0}) {
+      write("n.png", {"R", "G", "B", "A"}, dxt5nm(strength, [&](double) { return constant; }));
+      EXPECT_THAT(fault("n.png"),
+                  AllOf(HasSubstr("DXT5nm"), HasSubstr("--normal-channels A,G"), HasSubstr("--channel")))
+          << strength << " " << constant;
+      EXPECT_EQ(read("n.png", channel("G")).doubt, "");
+    }
+    write("grey.png", {"R", "G", "B", "A"}, dxt5nm(strength, [](double green) { return green; }));
+    EXPECT_THAT(read("grey.png").doubt, AllOf(HasSubstr("DXT5nm"), HasSubstr("{channel} G"))) << strength;
+  }
+}
+
+TEST_F(HeightChannels, GreenAloneIsDoubtedWhereRedAndBlueSaySo) {
+  const auto doubt = [&](double red, double blue) {
+    write("g.png", {"R", "G", "B"}, [&](int x, int y) {
+      return Doubles{red / 255, relief(x, y), blue / 255};
+    });
+    const HeightFile file = read("g.png");
+    expect_relief(file, kByte);
+    EXPECT_EQ(read("g.png", channel("G")).doubt, "");
+    return file.doubt;
+  };
+  EXPECT_EQ(doubt(0, 0), "");
+  EXPECT_THAT(doubt(130, 0), AllOf(HasSubstr("{encoding} terrarium"), HasSubstr("{channel} G")));
+  EXPECT_THAT(doubt(130, 77), HasSubstr("{encoding} terrarium"));
+  EXPECT_THAT(doubt(1, 0), HasSubstr("{encoding} mapbox"));
+  EXPECT_THAT(doubt(1, 140), HasSubstr("{encoding} mapbox"));
+  EXPECT_THAT(doubt(60, 0), HasSubstr("{encoding} rg16"));
+  EXPECT_THAT(doubt(255, 255), AllOf(HasSubstr("red is 255 and blue 255"), HasSubstr("{normals}")));
+}
+
+TEST_F(HeightChannels, GreyWithAlphaAndPlainGreenRaiseNoDoubt) {
+  const auto doubt = [&](const std::function<double(int, int)>& side,
+                         const std::function<double(int, int)>& alpha) {
+    write("p.png", {"R", "G", "B", "A"}, [&](int x, int y) {
+      return Doubles{side(x, y), relief(x, y), side(x, y), alpha(x, y)};
+    });
+    return read("p.png").doubt;
+  };
+  const auto none = [](int, int) { return 0.0; };
+  for (const double constant : {0.2, 0.5, 1.0}) {
+    EXPECT_EQ(doubt(relief, [&](int, int) { return constant; }), "") << constant;
+    EXPECT_EQ(doubt(none, [&](int, int) { return constant; }), "") << constant;
+  }
+  const auto mask = [](int x, int y) { return std::hypot(x - 32, y - 32) < 30 ? 1.0 : 0.0; };
+  const auto soft = [](int x, int y) { return std::clamp((40 - std::hypot(x - 32, y - 32)) / 16, 0.0, 1.0); };
+  EXPECT_EQ(doubt(relief, mask), "");
+  EXPECT_EQ(doubt(none, mask), "");
+  EXPECT_EQ(doubt(relief, soft), "");
+}
+
 // ---- Split encodings
 
 // Splits a number of 24 bits.

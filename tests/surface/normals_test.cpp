@@ -5,10 +5,12 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <limits>
 
 #include "core/constants.h"
 #include "core/error.h"
+#include "support/maps.h"
 
 namespace hemibake {
 namespace {
@@ -88,6 +90,18 @@ TEST(AngleWeightedNormals, OfARidgeAreSymmetricAndWrap) {
 }
 
 Grid<glm::vec3> encoded(glm::dvec3 normal) { return Grid<glm::vec3>(1, 1, glm::vec3(0.5 * normal + 0.5)); }
+
+TEST(AngleWeightedNormals, OfNeedlesTendToTheirLimit) {
+  // The steeper a map, the less its height matters: (nx, ny) tends to a limit like 1 / amplitude².
+  const Grid<glm::vec3> limit = angle_weighted_normals(white_noise_surface(16, 16, 1e4));
+  for (const double amplitude_m : {1e6, 1e8, 1e10}) {
+    const Grid<glm::vec3> normals = angle_weighted_normals(white_noise_surface(16, 16, amplitude_m));
+    for (size_t i = 0; i < normals.size(); ++i) {
+      EXPECT_GE(normals[i].z, 0) << amplitude_m;
+      EXPECT_NEAR(glm::distance(glm::vec2(normals[i]), glm::vec2(limit[i])), 0, 1e-4) << amplitude_m;
+    }
+  }
+}
 
 TEST(DecodeNormalMap, TakesGreenAsTold) {
   const glm::dvec3 normal = glm::normalize(glm::dvec3(0.3, 0.4, 0.8));

@@ -18,7 +18,8 @@ constexpr int kMaxBins = 65536;
 }  // namespace
 
 void Invocation::print(const nlohmann::json& json_result, const std::string& text) const {
-  const std::string result = json ? json_result.dump(2) + "\n" : text;
+  const std::string result =
+      json ? json_result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n" : text;
   if (std::fwrite(result.data(), 1, result.size(), stdout) != result.size() || std::fflush(stdout) != 0)
     throw InputError(fmt::format("standard output: could not write: {}", std::strerror(errno)));
 }

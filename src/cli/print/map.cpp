@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bake/normal_reading.h"
 #include "core/error.h"
 
 namespace hemibake {
@@ -64,20 +65,16 @@ std::string describe_values(const LoadedMap& map) {
   return text;
 }
 
-std::string describe_correlation(const std::optional<double>& value) {
-  return value ? fmt::format("{:.2f}", *value) : "none";
-}
-
 std::string describe_normals(const LoadedMap& map) {
   const NormalReading& normals = *map.reading.normals;
   std::string text =
-      fmt::format("normals   {} of {}, {}, y {} ({}), correlation with the heights x {}, y {}",
+      fmt::format("normals   {} of {}, {}, y {} ({}), correlation with the heights {}",
                   fmt::join(normals.channels, ", "), map.settings.normal_map.string(),
                   name_in(kEncodingNames, normals.encoding), normals.y == NormalY::kUp ? "up" : "down",
                   normals.y_from == NormalYSource::kSaid   ? "as said"
                   : normals.y_from == NormalYSource::kFile ? "as the file says"
                                                            : "as fits the heights",
-                  describe_correlation(normals.agreement.x), describe_correlation(normals.agreement.y));
+                  agreement_text(normals.agreement));
   if (normals.agreement.slope_ratio)
     text += fmt::format(", slopes {:.3g} times theirs", *normals.agreement.slope_ratio);
   return text + "\n";
@@ -112,7 +109,9 @@ std::string describe_map(const LoadedMap& map) {
                                  name_in(kEdgeNames, map.settings.edge));
   if (!map.settings.texel_m.empty())
     text += fmt::format(", made square: {} x {}", map.surface.width(), map.surface.height());
-  if (reading.holes > 0) text += fmt::format(", {} holes filled", reading.holes);
+  if (reading.holes > 0)
+    text += fmt::format(", {} holes {}", reading.holes,
+                        map.settings.holes == Holes::kOpen ? "open: rays see sky through them" : "filled");
   if (is_coarse(reading))
     text += fmt::format(", steps of {:.2g} m (8 bits: AO may be off by {:g})", reading.step_m, kErrorOfBytes);
   if (reading.normals) return text + "\n" + describe_normals(map);

@@ -165,7 +165,15 @@ void EmbreeTracer::spread_ground(const Receiver& receiver, Row& row) const {
   for (FormFactor& link : row.links) link.weight *= static_cast<float>(blocked / met);
 }
 
+// What is no surface has the row of open ground.
+void set_open_row(Row& row) {
+  row.visible_fraction = row.direct_over_pi = 1;
+  row.bent_normal = {0, 0, 1};
+  row.links.clear();
+}
+
 void EmbreeTracer::trace_texel(uint32_t texel, bool with_links, Row& row, TracerCounts& counts) const {
+  if (surface_.is_hole(texel)) return set_open_row(row);
   const glm::vec3 start = texel_start(texel);
   const double u = unit_interval(mix_bits(options_.seed, kTexelSample, texel));
   trace_rays(
@@ -176,6 +184,7 @@ void EmbreeTracer::trace_texel(uint32_t texel, bool with_links, Row& row, Tracer
 void EmbreeTracer::trace_patch(uint32_t patch, bool with_links, Row& row, TracerCounts& counts) const {
   if (options_.patch_kind == PatchKind::kTexels) return trace_texel(patch, with_links, row, counts);
   const FacetNode node = facet_node(patch_set_, patch);
+  if (facet_is_open(surface_, node.facet)) return set_open_row(row);
   const NodeRays& set = node_rays_[node_kind(node.subdivision, node.node)];
   const auto random = [&](uint64_t stream) { return unit_interval(mix_bits(options_.seed, stream, patch)); };
 

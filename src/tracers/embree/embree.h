@@ -9,6 +9,9 @@
 // Ground edges: those that leave it downwards meet ground, whose share is spread over the hits; a receiver
 // without hits links to itself.
 //
+// Holes of the surface: no ray meets a facet at one, and rays below the surface see sky. Texels in holes and
+// nodes of such facets are not traced; their rows are those of open ground, and no row links to them.
+//
 // Starts are lifted vertically: along the normal they may end inside the solid.
 // Nodes start each ray at another point of a small copy of their facet.
 #pragma once

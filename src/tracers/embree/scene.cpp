@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
 #include <new>
 #include <stdexcept>
 
@@ -20,7 +22,10 @@ void ignore_embree_error(void*, RTCError, const char*) {}
 }  // namespace
 
 EmbreeScene::EmbreeScene(const Surface& surface, double max_distance_m)
-    : surface_(surface), wrap_(surface.edge == Edge::kWrap), ground_beyond_(surface.edge == Edge::kGround) {
+    : surface_(surface),
+      wrap_(surface.edge == Edge::kWrap),
+      ground_beyond_(surface.edge == Edge::kGround),
+      has_holes_(!surface.holes.empty()) {
   const double range = height_range_m(surface) / surface.texel_size_m;
   top_texels_ = static_cast<float>(range);
   max_distance_texels_ = static_cast<float>(max_distance_m / surface.texel_size_m);
@@ -79,8 +84,10 @@ void EmbreeScene::fill_triangles(float* vertices, uint32_t* indices, uint32_t co
   for (uint32_t j = 0; j <= rows; ++j) {
     for (uint32_t i = 0; i <= columns; ++i) {
       const int x = static_cast<int>(i) - margin_, y = static_cast<int>(j) - margin_;
-      const double height_m =
-          surface_.heights_m(wrap_index(x, surface_.width()), wrap_index(y, surface_.height()));
+      const int column = wrap_index(x, surface_.width()), row = wrap_index(y, surface_.height());
+      // Embree leaves out triangles with a corner that is not finite.
+      const double height_m = surface_.is_hole(column, row) ? std::numeric_limits<double>::quiet_NaN()
+                                                            : surface_.heights_m(column, row);
       *vertices++ = static_cast<float>(x);
       *vertices++ = static_cast<float>(y);
       *vertices++ = static_cast<float>(height_m / surface_.texel_size_m);
@@ -126,7 +133,7 @@ RayOutcome EmbreeScene::follow_segment(const glm::vec3& start, const glm::vec3& 
   ray.mask = 0xffffffff;
   ray.id = 0;
   ray.flags = 0;
-  if (hit == nullptr) {
+  if (hit == nullptr && !has_holes_) {
     rtcOccluded1(scene_, &context, &ray);
     return ray.tfar < 0 ? RayOutcome::kHit : RayOutcome::kEscaped;
   }
@@ -137,7 +144,9 @@ RayOutcome EmbreeScene::follow_segment(const glm::vec3& start, const glm::vec3& 
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return RayOutcome::kEscaped;
     const uint32_t facet = facet_of_primitive(query.hit.primID);
     if (facet != own_facet) {
-      *hit = {facet, query.hit.u, query.hit.v, static_cast<double>(ray.tfar), 0};
+      if (has_holes_ && glm::dot(facet_normal(surface_, facet), glm::dvec3(direction)) >= 0)
+        return RayOutcome::kBelow;
+      if (hit != nullptr) *hit = {facet, query.hit.u, query.hit.v, static_cast<double>(ray.tfar), 0};
       return RayOutcome::kHit;
     }
     ray.tnear = std::max(std::nextafter(ray.tfar, length), ray.tfar * 1.00001f);
@@ -164,12 +173,39 @@ RayOutcome EmbreeScene::follow(const glm::vec3& start, const glm::vec3& directio
     const float climb = top_texels_ - start.z;
     if (climb <= 0) return RayOutcome::kEscaped;
     end = std::min(end, climb / direction.z * 1.0001f);
+  } else if (has_holes_) {
+    end = std::min(end, (start.z + 1) / -direction.z);  // below all of the surface
   }
   const float first_length = wrap_ ? std::min(end, length_in_block(start.x, start.y, direction)) : end;
   const RayOutcome outcome = follow_segment(start, direction, first_length, own_facet, hit);
-  if (outcome == RayOutcome::kEscaped && ground_beyond_ && direction.z < 0) return RayOutcome::kGround;
+  if (outcome == RayOutcome::kEscaped && ground_beyond_ && direction.z < 0)
+    return has_holes_ && ends_below(start, direction) ? RayOutcome::kEscaped : RayOutcome::kGround;
+  if (outcome == RayOutcome::kBelow) return RayOutcome::kEscaped;
   if (outcome == RayOutcome::kHit || first_length == end) return outcome;
   return follow_beyond(start, direction, first_length, end, own_facet, hit);
+}
+
+// Returns whether a ray that falls and meets nothing leaves the map below the surface: it came through a
+// hole.
+bool EmbreeScene::ends_below(const glm::vec3& start, const glm::vec3& direction) const {
+  const double length_x = ((direction.x > 0 ? surface_.width() - 1 : 0) - start.x) / direction.x;
+  const double length_y = ((direction.y > 0 ? surface_.height() - 1 : 0) - start.y) / direction.y;
+  const double length =
+      std::min(direction.x == 0 ? HUGE_VAL : length_x, direction.y == 0 ? HUGE_VAL : length_y);
+  if (!std::isfinite(length)) return true;
+  const glm::dvec3 border = glm::dvec3(start) + length * glm::dvec3(direction);
+  const double x = std::clamp(border.x, 0.0, surface_.width() - 1.0),
+               y = std::clamp(border.y, 0.0, surface_.height() - 1.0);
+  const int i = std::min(static_cast<int>(x), surface_.width() - 2),
+            j = std::min(static_cast<int>(y), surface_.height() - 2);
+  const auto height = [&](int column, int row) {
+    return static_cast<double>(surface_.heights_m(column, row)) / surface_.texel_size_m;
+  };
+  // Along a border the surface is linear between two texels.
+  const double u = x - i, v = y - j;
+  const double ground = (1 - u) * (1 - v) * height(i, j) + u * (1 - v) * height(i + 1, j) +
+                        (1 - u) * v * height(i, j + 1) + u * v * height(i + 1, j + 1);
+  return border.z < ground;
 }
 
 // Follows a ray through further copies of the map. Positions come from the start in double: nothing drifts.
@@ -191,7 +227,9 @@ RayOutcome EmbreeScene::follow_beyond(const glm::vec3& start, const glm::vec3& d
     const double length = length_in_block(piece_start.x, piece_start.y, direction);
     travelled = begin + length;
     const float piece_length = static_cast<float>(std::min(length, stop - begin));
-    if (follow_segment(piece_start, direction, piece_length, own_facet, hit) == RayOutcome::kHit) {
+    const RayOutcome outcome = follow_segment(piece_start, direction, piece_length, own_facet, hit);
+    if (outcome == RayOutcome::kBelow) return RayOutcome::kEscaped;
+    if (outcome == RayOutcome::kHit) {
       if (hit != nullptr) {
         hit->distance_texels += begin;
         hit->tiles_crossed = tiles;

@@ -1,5 +1,6 @@
 // Holds the triangles of a surface in Embree and follows rays over them, in units of texels. Rays go on
-// through the copies of a wrapping map (tracers/embree/embree.h says how far).
+// through the copies of a wrapping map (tracers/embree/embree.h says how far). Facets at a hole are left out;
+// a ray that is below the surface sees sky.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -28,8 +29,9 @@ class EmbreeScene {
   EmbreeScene& operator=(const EmbreeScene&) = delete;
   ~EmbreeScene();
 
-  // Follows a ray to its end: kGround where it leaves a map with ground edges downwards. start: texels. direction: unit. own_facet: never hit; kNoFacet: none.
-  // hit: filled where the ray hits; null: only the outcome is wanted.
+  // Follows a ray to its end: kGround where it leaves a map with ground edges downwards. start: texels.
+  // direction: unit. own_facet: never hit; kNoFacet: none. hit: filled where the ray hits; null: only the
+  // outcome is wanted.
   RayOutcome follow(const glm::vec3& start, const glm::vec3& direction, uint32_t own_facet,
                     SurfaceHit* hit) const;
 
@@ -38,6 +40,7 @@ class EmbreeScene {
   void fill_triangles(float* vertices, uint32_t* indices, uint32_t columns, uint32_t rows) const;
   RayOutcome follow_segment(const glm::vec3& start, const glm::vec3& direction, float length,
                             uint32_t own_facet, SurfaceHit* hit) const;
+  bool ends_below(const glm::vec3& start, const glm::vec3& direction) const;
   RayOutcome follow_beyond(const glm::vec3& start, const glm::vec3& direction, double first_length,
                            double end, uint32_t own_facet, SurfaceHit* hit) const;
   float length_in_block(float x, float y, const glm::vec3& direction) const;
@@ -46,7 +49,7 @@ class EmbreeScene {
   const Surface& surface_;
   RTCDevice device_ = nullptr;
   RTCScene scene_ = nullptr;
-  bool wrap_, ground_beyond_;
+  bool wrap_, ground_beyond_, has_holes_;
   int block_width_, block_height_;  // of the repeated map in the scene, texels
   int margin_;
   uint32_t scene_columns_;  // cells in a row of the scene

@@ -75,11 +75,12 @@ class MarchTracer final : public Tracer {
   glm::dvec2 into_map(const glm::dvec2& position) const;
   uint32_t facet_at(const glm::dvec2& position) const;
 
-  // Lengths in texels from here on; heights count from height-map value 0.
   const Surface& surface_;
   PatchSet patch_set_;
   MarchOptions options_;
   const bool wrap_, round_weights_;
+  double zero_m_;  // height of the lowest texel over where heights count from
+  // Lengths in texels from here on.
   std::vector<WeightedDirection> rays_;
   Grid<float> padded_heights_;  // one texel more on every side: texel (i, j) is at (i + 1, j + 1)
   double lift_, sky_, max_distance_;
@@ -98,7 +99,8 @@ MarchTracer::MarchTracer(const Surface& surface, MarchOptions options)
   const double range = height_range_m(surface);
   const double amplitude = options_.amplitude_m > 0 ? options_.amplitude_m : range;
   lift_ = options_.lift_percent / 100 * amplitude / surface.texel_size_m;
-  sky_ = std::max(amplitude, options_.lowest_m + range) / surface.texel_size_m;
+  zero_m_ = options_.lookup == MarchLookup::kMayaux2018 ? options_.lowest_m : 0;
+  sky_ = std::max(amplitude, zero_m_ + range) / surface.texel_size_m;
   max_distance_ = options_.max_distance_m / surface.texel_size_m;
   pad_heights();
 }
@@ -111,8 +113,7 @@ void MarchTracer::pad_heights() {
     for (int x = -1; x <= width; ++x) {
       const double height_m =
           surface_.heights_m(wrap_or_clamp(x, width, edge), wrap_or_clamp(y, height, edge));
-      padded_heights_(x + 1, y + 1) =
-          static_cast<float>((options_.lowest_m + height_m) / surface_.texel_size_m);
+      padded_heights_(x + 1, y + 1) = static_cast<float>((zero_m_ + height_m) / surface_.texel_size_m);
     }
   }
 }

@@ -6,9 +6,10 @@
 // A ray starts over the texel's centre, lifted vertically, and advances one texel horizontally a step (a ray
 // straight up, one texel vertically). At or above the amplitude it is sky, after `max_steps` too. A hit steps
 // back by the fraction (H − z)/(2z − d + H − H') of the step: H the height there, z the ray's height, d the
-// rise of a step, H' the height one step before (at the first step the start of the ray). Heights count from
-// height-map value 0: the formula is not invariant to an offset, and is not the crossing of the two lines,
-// which would be (H − z)/(H − H' − d). About 3 of 10⁵ rays give a fraction outside 0..1, clamped here.
+// rise of a step, H' the height one step before (at the first step the start of the ray). The formula is not
+// the crossing of the two lines, which would be (H − z)/(H − H' − d), and depends on where heights count
+// from: the lowest texel, so that an offset of the map changes nothing, and height-map value 0 in 2018. About
+// 3 of 10⁵ rays give a fraction outside 0..1, clamped here.
 //
 // It differs from the truth where a texel hides its own neighbour: nothing is hit within the first texel, and
 // a wall is met at the texel after it.
@@ -41,7 +42,7 @@ enum class MarchWeights {
 enum class MarchLookup {
   kBilinear,
   // As the sampler of 2018: bilinear weights rounded to 1/256, and beyond the border texels' centres the
-  // border's height instead of the one across the seam.
+  // border's height instead of the one across the seam; heights count from height-map value 0.
   kMayaux2018,
 };
 
@@ -59,7 +60,8 @@ struct MarchOptions {
   // Metres per unit of height-map value, >= 0; 0: the height range. The sky begins at the amplitude, but
   // never below the highest texel.
   double amplitude_m = 0;
-  // Height of the surface's zero: amplitude_m times the lowest height-map value (after filtering).
+  // With the lookup of 2018, height of the surface's zero: amplitude_m times the lowest height-map value
+  // (after filtering).
   double lowest_m = 0;
   // Length of each normal as its map stores it (normal_map_lengths); empty: all 1. The program of 2018 did
   // not renormalise: rays are stretched with the normal, which bends them away from their angle and moves

@@ -74,12 +74,27 @@ TEST(March, TheFirstStepCountsFromTheLiftedStart) {
   EXPECT_NEAR(ray.distance_m, hit_distance(1, kLift + 0.5, 0.5, 4, kLift), 1e-6);
 }
 
-TEST(March, HeightsCountFromMapValueZero) {
+TEST(March, PublishedHeightsCountFromMapValueZero) {
   MarchOptions options = rim_rays(1);
+  options.lookup = MarchLookup::kMayaux2018;
   options.lowest_m = 0.25 * kAmplitude;
   const RayRecord ray = last_ray(column({0.25f, 0.25f, 1, 0.25f, 0.25f}), options, 0);
   ASSERT_TRUE(ray.hit);
   EXPECT_NEAR(ray.distance_m, hit_distance(2, 1 + kLift + 1, 0.5, 4, 1), 1e-6);
+}
+
+TEST(March, AnOffsetOfTheMapChangesNothing) {
+  MarchOptions options = rim_rays(64);
+  const Surface surface = white_noise_surface(12, 12, kAmplitude);
+  const auto expected = make_march_tracer(surface, options);
+  options.lowest_m = 1000 * kAmplitude;
+  const auto offset = make_march_tracer(surface, options);
+  for (uint32_t texel = 0; texel < surface.texel_count(); ++texel) {
+    const Row a = texel_row(*expected, texel), b = texel_row(*offset, texel);
+    EXPECT_EQ(a.visible_fraction, b.visible_fraction);
+    ASSERT_EQ(a.links.size(), b.links.size());
+    for (size_t k = 0; k < a.links.size(); ++k) EXPECT_EQ(a.links[k].patch, b.links[k].patch);
+  }
 }
 
 TEST(March, GoesOnAcrossTheSeam) {
