@@ -131,6 +131,7 @@ std::vector<RefereeRow> referee_rows_from(const JsonReader& json) {
 
 std::vector<Setting> settings_from(const JsonReader& json) {
   std::vector<Setting> settings;
+  if (json.is_null()) return settings;  // as older versions write none
   for (const auto& [name, value] : json.members()) {
     Setting& setting = settings.emplace_back(Setting{name, ""});
     if (value.is_whole())
@@ -146,7 +147,7 @@ std::vector<Setting> settings_from(const JsonReader& json) {
 }  // namespace
 
 ordered_json json_from_settings(const std::vector<Setting>& settings) {
-  ordered_json json;
+  ordered_json json = ordered_json::object();
   for (const Setting& setting : settings)
     std::visit([&](const auto& value) { json[setting.name] = value; }, setting.value);
   return json;

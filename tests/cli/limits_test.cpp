@@ -25,7 +25,8 @@ class Limits : public CliTest {
       fs::create_directory(folder_ / "out");
       const CommandResult result = run(command, limit + " && ");
       const std::string where = limit + ": " + command + "\n" + result.standard_error;
-      if (result.exit_code == 0) continue;
+      // 127: the loader of the system had too little for the libraries.
+      if (result.exit_code == 0 || result.exit_code == 127) continue;
       EXPECT_EQ(result.exit_code, 2) << where;
       EXPECT_TRUE(result.standard_error.starts_with("hemibake: ")) << where;
       EXPECT_EQ(std::count(result.standard_error.begin(), result.standard_error.end(), '\n'), 1) << where;

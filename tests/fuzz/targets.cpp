@@ -160,6 +160,7 @@ const FuzzTarget* find_fuzz_target(std::string_view name) {
 void run_fuzz_target(const FuzzTarget& target, std::string_view bytes) {
   try {
     target.read(bytes);
+    return;
   } catch (const InputError& error) {
     if (std::string_view(error.what()).find('\n') == std::string_view::npos) return;
     std::fprintf(stderr, "%s: an error of several lines: %s\n", target.name, error.what());
