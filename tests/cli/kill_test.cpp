@@ -1,4 +1,5 @@
-// Commands that are killed at any moment: what they wrote is whole or not there, and the next run does its work.
+// Commands that are killed at any moment: what they wrote is whole or not there, and the next run does its
+// work.
 #include <chrono>
 
 #include "cli/run_hemibake.h"

@@ -3,6 +3,7 @@
 // CORPUS:    a folder with a folder of files per target.
 // MUTATIONS: of every file, 0 by default; the same ones at every run.
 #include <signal.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned kLongestSeconds = 10;
+constexpr itimerval kLongest = {{}, {10, 0}};  // of processor time
 constexpr uint64_t kStream = 18;
 
 // What runs now, for the line that a crash prints: kept for a signal handler, thus of fixed size.
@@ -31,7 +32,7 @@ void on_crash(int signal) {
   const auto print = [](const char* text) {
     if (write(STDERR_FILENO, text, std::char_traits<char>::length(text)) < 0) _exit(1);
   };
-  print(signal == SIGALRM ? "took too long: " : "crashed: ");
+  print(signal == SIGPROF ? "took too long: " : "crashed: ");
   print(running);
   print("\n");
   _exit(1);
@@ -84,7 +85,7 @@ int replay(const fs::path& corpus, uint64_t mutations, const std::vector<std::st
       for (uint64_t mutation = 0; mutation <= mutations; ++mutation, ++runs) {
         std::snprintf(running, sizeof running, "%s, mutation %llu", file.c_str(),
                       static_cast<unsigned long long>(mutation));
-        alarm(kLongestSeconds);
+        setitimer(ITIMER_PROF, &kLongest, nullptr);
         run_fuzz_target(target, mutation == 0 ? bytes : mutated(bytes, mutation));
       }
     }
@@ -101,7 +102,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: %s CORPUS [MUTATIONS [TARGET…]]\n", argv[0]);
     return 2;
   }
-  for (const int number : {SIGABRT, SIGALRM, SIGBUS, SIGFPE, SIGILL, SIGSEGV})
+  for (const int number : {SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGPROF, SIGSEGV})
     signal(number, hemibake::on_crash);
   if (!std::freopen("/dev/null", "w", stdout)) return 1;
   const uint64_t mutations = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 0;
