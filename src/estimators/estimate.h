@@ -16,7 +16,7 @@ enum class AoKind { kUniform, kCosine };
 struct Estimate {
   Grid<float> ao;  // per texel, 0..1, 1 = open
   AoKind kind = AoKind::kUniform;
-  Grid<float> other_ao;  // of the other kind, where a method gives both; else empty
+  Grid<float> other_ao;          // of the other kind, where a method gives both; else empty
   Grid<glm::vec3> bent_normals;  // unit, per texel; empty if the method has none
   Grid<uint8_t> known;           // 0: the method does not know (AO is 1 there); empty: known everywhere
   uint64_t work = 0;             // tree nodes visited, taps or height samples read, over all passes

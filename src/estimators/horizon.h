@@ -5,8 +5,8 @@
 // Jimenez, X. Wu, A. Pesce, A. Jarabo, "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016
 // (GTAO): the cosine-weighted integral of a slice between horizons h₁ ≤ 0 ≤ h₂ from the vertical, normal
 // projected to angle γ, is ¼ Σ (−cos(2h − γ) + cos γ + 2h sin γ) times the projected normal's length; the
-// uniform one ½((1 − cos h₁) + (1 − cos h₂)) without that length: two cosines more give both. With many azimuths and steps both are the truth, as far as the
-// radius reaches.
+// uniform one ½((1 − cos h₁) + (1 − cos h₂)) without that length: two cosines more give both. With many
+// azimuths and steps both are the truth, as far as the radius reaches.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,9 @@ struct HorizonOptions {
   uint64_t seed = 0;
 };
 
-// Estimates AO of both kinds. Heights are those of the surface's triangles. Beyond the radius an endless map fills all
-// below the horizontal, ground beyond the border does so too, and beyond an open edge is nothing. Bent normals: the mean direction of the sky seen.
+// Estimates AO of both kinds. Heights are those of the surface's triangles. Beyond the radius an endless map
+// fills all below the horizontal, ground beyond the border does so too, and beyond an open edge is nothing.
+// Bent normals: the mean direction of the sky seen.
 Estimate estimate_horizon(const Surface& surface, const HorizonOptions& options);
 
 }  // namespace hemibake

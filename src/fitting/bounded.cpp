@@ -27,7 +27,8 @@ Fit fit_bounded_tau(std::span<const CurvePoint> points, int albedo_count, const 
   return fit_formula<2>(formula, points, [k0, k1](const auto* p, const CurvePoint& point) {
     const double factor = bounded_direct_factor(point.ao, k0, k1);
     const double blocked = bounded_blocked_factor(point.ao, k0, k1);
-    return total_factor(factor, blocked, bounded_escape_share(factor, p[0] * (1.0 - p[1]), p[0]), point.albedo);
+    return total_factor(factor, blocked, bounded_escape_share(factor, p[0] * (1.0 - p[1]), p[0]),
+                        point.albedo);
   });
 }
 

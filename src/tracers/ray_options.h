@@ -45,8 +45,9 @@ enum class TexelLinks { kNearest, kBilinear };
 struct RayOptions {
   int rays = 256;             // per texel, 1..2^20; per node see rays_per_node
   double cone_degrees = 180;  // full aperture about the normal, (0, 180]
-  double max_distance_m = std::numeric_limits<double>::infinity();  // hits beyond are sky, > 0; none with ground edges
-  DirectionSet directions = DirectionSet::kUniform;                 // of texels; nodes always use kCosine
+  double max_distance_m =
+      std::numeric_limits<double>::infinity();       // hits beyond are sky, > 0; none with ground edges
+  DirectionSet directions = DirectionSet::kUniform;  // of texels; nodes always use kCosine
   PatchKind patch_kind = PatchKind::kFacets;
   TexelLinks texel_links = TexelLinks::kBilinear;
   uint64_t seed = 0;

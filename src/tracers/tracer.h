@@ -86,7 +86,8 @@ class Tracer {
   }
   // Returns a tracer of the same surface with other random rotations, to measure noise; shares large data.
   virtual std::unique_ptr<Tracer> reseeded(uint64_t seed) const = 0;
-  // Returns every ray that trace_texel shoots for this texel, in order, but those to ground beyond the border.
+  // Returns every ray that trace_texel shoots for this texel, in order, but those to ground beyond the
+  // border.
   virtual std::vector<RayRecord> replay_texel(uint32_t texel) const = 0;
 };
 

@@ -8,11 +8,11 @@
 #include <cstdlib>
 
 #include "core/parallel.h"
-#include "support/threads.h"
 #include "estimators/disk.h"
 #include "estimators/disk_robust.h"
 #include "sampling/low_discrepancy.h"
 #include "support/maps.h"
+#include "support/threads.h"
 
 namespace hemibake {
 namespace {

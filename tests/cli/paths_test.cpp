@@ -19,8 +19,8 @@ class Paths : public CliTest {
   }
   // `check --referee` reads the map of the bake.
   CommandResult judge(const std::string& bake, const std::string& from) const {
-    return run_shell(fmt::format("cd '{}' && '{}' check {} --referee --texels 8 --paths 4", (folder_ / from).string(),
-                                 HEMIBAKE_BINARY, bake));
+    return run_shell(fmt::format("cd '{}' && '{}' check {} --referee --texels 8 --paths 4",
+                                 (folder_ / from).string(), HEMIBAKE_BINARY, bake));
   }
 };
 

@@ -199,8 +199,7 @@ TEST_F(Understood, LowAndHighAreTheHeightsOfBlackAndWhite) {
   expect_refusal("bake unit.exr -o x.exr --low 2", AllOf(HasSubstr("--low"), HasSubstr("--high")));
   expect_refusal("bake unit.exr -o x.exr --high 2 --amplitude 1",
                  HasSubstr("--high: is given with --amplitude"));
-  expect_refusal("bake unit.exr -o x.exr --size 2 --texel 1",
-                 HasSubstr("--texel: is given with --size"));
+  expect_refusal("bake unit.exr -o x.exr --size 2 --texel 1", HasSubstr("--texel: is given with --size"));
 }
 
 TEST_F(Understood, TexelSizeIsTheSizeOverTheTexels) {
@@ -322,8 +321,8 @@ TEST_F(Understood, IsReadBackTheSame) {
   write<float>("wide.exr", {"Y"}, [](int x, int y) { return std::vector<double>{10 * relief(x, y)}; });
   write_normals("up.png", [](glm::dvec3 c) { return glm::dvec3(c.x, 1 - c.y, c.z); });
   for (const char* arguments :
-       {"unit.exr", "unit.exr --low 3 --high 1", "unit.exr --texel 0.3", "int.tif --size 700",
-        "wide.exr", "wide.exr --amplitude 0.3", "unit.exr --normals up.png --normal-y auto"}) {
+       {"unit.exr", "unit.exr --low 3 --high 1", "unit.exr --texel 0.3", "int.tif --size 700", "wide.exr",
+        "wide.exr --amplitude 0.3", "unit.exr --normals up.png --normal-y auto"}) {
     run_well(fmt::format("bake {} -o b.exr --rays 4 --outputs ao,normal", arguments));
     const BakeFile file = read_bake(folder_ / "b.exr");
     const LoadedMap map = load_map(recorded_map_settings(file.provenance, folder_ / "b.exr"));

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/parallel.h"
-#include "support/threads.h"
 #include "support/maps.h"
+#include "support/threads.h"
 
 namespace hemibake {
 namespace {

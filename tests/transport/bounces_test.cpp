@@ -6,9 +6,9 @@
 
 #include "core/constants.h"
 #include "core/parallel.h"
-#include "support/threads.h"
 #include "core/statistics.h"
 #include "support/maps.h"
+#include "support/threads.h"
 #include "surface/facets.h"
 #include "tracers/embree/embree.h"
 

@@ -44,7 +44,7 @@ struct HeightPyramid {
   double inverse_width = 0, inverse_height = 0;
   bool wrap = true;
   bool ends_at_horizontal = true;  // far away, everything below the horizontal is blocked
-  float top = 0;  // height of the highest texel; all heights here are in texels
+  float top = 0;                   // height of the highest texel; all heights here are in texels
 
   // Readable for a packet and a segment from any position from -1, -1 on; on an open map also from positions
   // before it whose window just reaches the map.

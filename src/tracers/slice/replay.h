@@ -10,7 +10,8 @@
 namespace hemibake {
 
 // Returns one record per interval that a lane of a packet of texels sees, and one per azimuth for its sky:
-// the whole that form factors are a sample of; ground beyond the border is in none. view: traced with Query::kAllIntervals.
+// the whole that form factors are a sample of; ground beyond the border is in none. view: traced with
+// Query::kAllIntervals.
 std::vector<RayRecord> replay_slices(const Surface& surface, const SlicePaths& paths,
                                      const SlicePacket& packet, const PacketView& view, size_t lane);
 

@@ -35,9 +35,9 @@
 namespace hemibake {
 
 struct SliceOptions {
-  int azimuths = 64;  // per receiver, 1..65536
-  double max_distance_m =
-      std::numeric_limits<double>::infinity();  // hits beyond, along the ray, are sky, > 0; none with ground edges
+  int azimuths = 64;                                                // per receiver, 1..65536
+  double max_distance_m = std::numeric_limits<double>::infinity();  // hits beyond, along the ray, are sky, >
+                                                                    // 0; none with ground edges
   PatchKind patch_kind = PatchKind::kFacets;
   TexelLinks texel_links = TexelLinks::kBilinear;
   double lift_texels = 0;  // of starts above the surface: 0 is the truth, > 0 compares with ray tracers

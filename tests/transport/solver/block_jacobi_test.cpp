@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "support/threads.h"
 #include "support/maps.h"
+#include "support/threads.h"
 #include "tracers/slice/slice.h"
 #include "transport/trace_surface.h"
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "support/threads.h"
 #include "support/maps.h"
 #include "support/sliced.h"
+#include "support/threads.h"
 #include "transport/trace_surface.h"
 
 namespace hemibake {
