@@ -1,5 +1,7 @@
 // Commands that are killed at any moment: what they wrote is whole or not there, and the next run does its
 // work.
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "cli/run_hemibake.h"
@@ -11,6 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMoments = 4;
+constexpr int kKilled = 128 + 9;
 constexpr uint64_t kStream = 9;
 
 class Killed : public CliTest {
@@ -28,10 +31,10 @@ class Killed : public CliTest {
     for (int moment = 0; moment < kMoments; ++moment) {
       begin_anew(inputs);
       const double share = (moment + unit_interval(mix_bits(1, kStream, moment))) / kMoments;
-      const CommandResult result =
-          run(arguments, "timeout -s KILL " + std::to_string(share * whole_run.count()));
-      if (result.exit_code != 0) ++killed;
+      const CommandResult result = run_killed(arguments, share * whole_run.count());
+      if (result.exit_code == kKilled) ++killed;
       for (const auto& [name, bytes] : outputs()) {
+        if (name.find("/.") != std::string::npos || name.starts_with('.')) continue;  // not removed yet
         const auto right = whole.find(name);
         ASSERT_NE(right, whole.end()) << name << " after " << share << " of: " << arguments;
         EXPECT_TRUE(bytes == right->second) << name << " after " << share << " of: " << arguments;
@@ -42,11 +45,17 @@ class Killed : public CliTest {
     EXPECT_GT(killed, 0) << arguments;
   }
 
-  // Returns the bytes of every file below out/, without hidden ones: temporaries of whoever was killed.
+  // Kills a run after so many seconds, where it is not at its end by then.
+  CommandResult run_killed(const std::string& arguments, double seconds) const {
+    return run_shell(fmt::format("cd '{}' && timeout -s KILL {} '{}' {}", folder_.path().string(), seconds,
+                                 HEMIBAKE_BINARY, arguments));
+  }
+
+  // Returns the bytes of every file below out/.
   std::map<std::string, std::string> outputs() const {
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder_ / "out"))
-      if (entry.is_regular_file() && !entry.path().filename().string().starts_with('.'))
+      if (entry.is_regular_file())
         files[fs::relative(entry.path(), folder_ / "out").string()] = read_bytes(entry.path());
     return files;
   }
@@ -94,7 +103,7 @@ TEST_F(Killed, Trade) {
   const std::string trade = "trade map.exr -o out --effort quick";
   fs::create_directory(folder_ / "out");
   for (int moment = 0; moment < 3; ++moment) {
-    run(trade, "timeout -s KILL " + std::to_string(0.3 + unit_interval(mix_bits(2, kStream, moment))));
+    run_killed(trade, 0.3 + unit_interval(mix_bits(2, kStream, moment)));
     for (const auto& [name, bytes] : outputs())
       if (name.ends_with(".json")) {
         EXPECT_FALSE(nlohmann::json::parse(bytes, nullptr, false).is_discarded()) << name;
