@@ -157,20 +157,40 @@ ImageClaim jpeg2000_claim(const std::filesystem::path& path) {
   return {at(8, 4) - at(16, 4), at(12, 4) - at(20, 4), at(40, 2)};
 }
 
-// Layout: openexr.com/en/latest/OpenEXRFileLayout.html: attributes of name, type, size, value.
-ImageClaim exr_claim(const std::filesystem::path& path) {
-  constexpr std::string_view kWindow = "dataWindow\0box2i\0\x10\0\0\0"sv;
-  std::ifstream file(path, std::ios::binary);
-  std::string block(size_t{1} << 20, '\0');
-  file.read(block.data(), static_cast<std::streamsize>(block.size()));
-  block.resize(static_cast<size_t>(file.gcount()));
-  const size_t start = block.find(kWindow);
-  if (start == std::string::npos) return {};
+// Layout: openexr.com/en/latest/OpenEXRFileLayout.html: attributes of name, type, size and value; an empty
+// name ends a part, and in files of several parts another ends them all.
+ExrClaim exr_claim(const std::filesystem::path& path) {
+  constexpr uint64_t kSeveralParts = 0x1000;
+  constexpr size_t kMostName = 256;
+  std::error_code ignored;
+  const uint64_t size = std::filesystem::file_size(path, ignored);
   ByteReader bytes(path);
-  const auto at = [&](size_t offset) {
-    return int64_t{static_cast<int32_t>(bytes.at(start + kWindow.size() + offset, 4))};
+  const bool has_parts = (bytes.at(4, 4) & kSeveralParts) != 0;
+  uint64_t at = 8;
+  const auto take_name = [&] {
+    std::string name;
+    for (char c; name.size() < kMostName && (c = static_cast<char>(bytes.at(at++, 1))) != 0;) name += c;
+    return name;
   };
-  return {at(8) - at(0) + 1, at(12) - at(4) + 1, 1};
+  ExrClaim claim;
+  for (bool ended = false; at < size;) {
+    const std::string name = take_name();
+    if (name.empty() && (!has_parts || ended)) return claim;
+    ended = name.empty();
+    if (ended) continue;
+    take_name();  // type
+    const uint64_t value_at = at + 4, value_size = bytes.at(at, 4);
+    if (value_at > size || value_size > size - value_at) break;
+    at = value_at + value_size;
+    if (name != "dataWindow") continue;
+    const auto edge = [&](uint64_t offset) {
+      return int64_t{static_cast<int32_t>(bytes.at(value_at + offset, 4))};
+    };
+    claim.width = std::max(claim.width, edge(8) - edge(0) + 1);
+    claim.height = std::max(claim.height, edge(12) - edge(4) + 1);
+  }
+  claim.is_whole = false;
+  return claim;
 }
 
 }  // namespace hemibake

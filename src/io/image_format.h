@@ -27,8 +27,12 @@ struct ImageClaim {
 // Returns the size that a JPEG 2000 names, whose reader decodes it on opening; zeros where it names none.
 ImageClaim jpeg2000_claim(const std::filesystem::path& path);
 
-// Returns the data window of the first part of an OpenEXR, whose reader takes memory for its rows on opening;
-// zeros where its header, or its first MiB, has none.
-ImageClaim exr_claim(const std::filesystem::path& path);
+struct ExrClaim {
+  int64_t width = 0, height = 0;  // largest of all parts
+  bool is_whole = true;           // no attribute is longer than the file
+};
+
+// Returns what the headers of an OpenEXR claim, whose reader takes memory for rows and attributes on opening.
+ExrClaim exr_claim(const std::filesystem::path& path);
 
 }  // namespace hemibake

@@ -96,8 +96,11 @@ void check_before_opening(const ChannelReader& reader, const ImageFormat& format
                  claim.width, claim.height);
   }
   if (format.reader == std::string_view("openexr")) {
-    const ImageClaim claim = exr_claim(reader.path());
-    if (claim.width != 0 || claim.height != 0) check_size(reader, claim.width, claim.height);
+    const ExrClaim claim = exr_claim(reader.path());
+    if (!claim.is_whole)
+      reader.refuse(
+          "is not an image that can be read (its header is damaged or cut short), expected a whole OpenEXR");
+    check_size(reader, claim.width, claim.height);
     constexpr double kBytesPerRow = 32;  // of the table of offsets, and copies of it
     check_memory(reader, kBytesPerRow * static_cast<double>(claim.height), claim.width, claim.height);
   }
