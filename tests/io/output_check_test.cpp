@@ -20,7 +20,7 @@ TEST(OutputCheck, FindsAnInputByAnyName) {
     return error_of<InputError>([&] { refuse_overwriting_inputs({"", output}, {"", folder / "in.exr"}); });
   };
   EXPECT_THAT(refusal(folder / "in.exr"), HasSubstr("in.exr: is the input itself, expected another name"));
-  for (const char* name : {"link.exr", "hard.exr", "again/in.exr", "./again/../in.exr"})
+  for (const char* name : {"link.exr", "hard.exr", "again/in.exr", "./again/again/in.exr"})
     EXPECT_THAT(refusal(folder / name), HasSubstr("in.exr itself, expected another name for the output"));
   refuse_overwriting_inputs({folder / "out.exr"}, {folder / "in.exr", folder / "missing", "0.9,0.6,0.2"});
 }
