@@ -60,9 +60,7 @@ std::string describe_fits(const FitFile& file) {
 std::optional<FitFile> fits_of(const Curves& curves, const RunOptions& options,
                                const Provenance& provenance) {
   try {
-    FitFile fits = fit_all(options.map.map.stem().string(), curves, provenance);
-    print_warnings(options.map.map.string(), fit_warnings(fits.fits));
-    return fits;
+    return fit_all(options.map.map.stem().string(), curves, provenance);
   } catch (const std::runtime_error& error) {
     throw_if_cancelled();
     print_message(fmt::format("{}: no fit: {}", options.map.map.string(), error.what()));
@@ -134,9 +132,10 @@ MapOutcome run_one(RunOptions options, Again again, const Invocation& invocation
   const Provenance provenance = record_of(map, result, invocation.context.command);
   RunResults results{
       make_curves(result.planes, options.bins), checks_of_bake({result.planes, provenance}, {}), {}};
-  print_warnings(options.map.map.string(), warnings_of(result));
   results.fits = fits_of(results.curves, options, provenance);
   write_run(options, result, provenance, results);
+  print_warnings(options.map.map.string(), warnings_of(result));
+  if (results.fits) print_warnings(options.map.map.string(), fit_warnings(results.fits->fits));
 
   const std::optional<FitFile>& fits = results.fits;
   const Checks& checks = results.checks;

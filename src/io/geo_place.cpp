@@ -51,7 +51,7 @@ bool has_geo_tags(const fs::path& path) {
 double number_in(std::string_view text, const char* name) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+  if (error != std::errc{} || end != text.data() + text.size())
     throw InputError(fmt::format("attribute hemibake:{}: '{}', expected a number", name, excerpt(text)));
   return value;
 }
@@ -63,6 +63,8 @@ std::array<double, 6> transform_in(std::string_view text) {
     if (comma == std::string_view::npos)
       throw InputError("attribute hemibake:geo_transform: expected six numbers between commas");
     transform[i] = number_in(text.substr(0, comma), "geo_transform");
+    if (!std::isfinite(transform[i]))
+      throw InputError("attribute hemibake:geo_transform: expected six finite numbers");
     text.remove_prefix(std::min(text.size(), comma + 1));
   }
   return transform;

@@ -95,7 +95,8 @@ TEST_F(TerrainFiles, BakesAreWrittenAsBands) {
   const std::string value = gdal("gdallocationinfo -valonly -b 1 b.tif 7 2");
   EXPECT_NEAR(std::stod(value), bake.visible_fraction(7, 2), 1e-6);
   std::vector<std::string> names;
-  for (const auto& band : info("b.tif")["bands"]) names.push_back(band["description"]);
+  const auto bands = info("b.tif")["bands"];
+  for (const auto& band : bands) names.push_back(band["description"]);
   EXPECT_THAT(names, testing::IsSupersetOf({"ao", "visibility", "irradiance.00", "irradiance.01"}));
   EXPECT_THAT(refusal("curves b.tif -o c.csv"), HasSubstr("b.tif: bakes are read from EXR"));
   write_height_map(folder_ / "plain.exr", Grid<float>(8, 8, 0.5f), make_provenance("test"));

@@ -215,9 +215,15 @@ TEST(BakeFile, ValuesOutOfTheirRangeAreNamed) {
   EXPECT_THAT(refusal(brighten), HasSubstr("channel irradiance.01 is 3.2 at texel 0,1"));
   EXPECT_THAT(refusal([](Bake& bake) { bake.total[0] = -1; }), HasSubstr("channel total is -1"));
   EXPECT_THAT(refusal([](Bake& bake) { bake.residual[0] = 2; }), HasSubstr("channel residual is 2"));
-  EXPECT_THAT(refusal([](Bake& bake) { bake.normals[4] *= 2; }), HasSubstr("channel normal has length 2"));
+  EXPECT_THAT(refusal([](Bake& bake) {
+                bake.normals[4] = {0, 0, 2};
+              }),
+              HasSubstr("channel normal has length 2"));
   EXPECT_THAT(refusal([](Bake& bake) { bake.normals[4] *= 0; }), HasSubstr("channel normal has length 0"));
-  EXPECT_THAT(refusal([](Bake& bake) { bake.bent_normals[4] *= 2; }), HasSubstr("channel bent has length 2"));
+  EXPECT_THAT(refusal([](Bake& bake) {
+                bake.bent_normals[4] = {0, 0, 2};
+              }),
+              HasSubstr("channel bent has length 2"));
 
   write([](Bake& bake) { bake.bent_normals[4] = glm::vec3(0); }, {{"version", "0"}});
   read_bake(folder / "odd.exr");  // a texel that sees no sky

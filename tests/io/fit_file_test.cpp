@@ -95,7 +95,7 @@ TEST(FitFile, WrongTypesAndSizesAreNamed) {
     EXPECT_THAT(refusal("/F0/points", points), testing::HasSubstr("f.json: F0/points is "));
   EXPECT_EQ(refusal("/F1/model", 5), "f.json: F1/model is 5, expected a text");
   EXPECT_EQ(refusal("/F1/rms", -1), "f.json: F1/rms is -1, expected a number from 0");
-  EXPECT_EQ(refusal("/F1/rms", nullptr), "f.json: F1/rms is null, expected a number");
+  EXPECT_EQ(refusal("/F1/rms", nullptr), "f.json: F1/rms is null, expected a number from 0");
   EXPECT_EQ(refusal("/F0/parameters/A/on_bound", 1),
             "f.json: F0/parameters/A/on_bound is 1, expected true or false");
   EXPECT_EQ(refusal("/F0/covariance", {{1.25}}),
