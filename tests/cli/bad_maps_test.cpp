@@ -47,11 +47,12 @@ TEST_F(BadMaps, AreNamed) {
   write_bytes(folder_ / "empty.png", "");
   expect_bad_map("empty.png", "empty.png: is empty, expected an image");
   write_bytes(folder_ / "text.png", "This is a letter and no picture.\n\nIt has several lines.\n");
-  expect_bad_map("text.png", StartsWith("text.png: is not an image that can be read ("));
+  expect_bad_map("text.png", StartsWith("text.png: is not an image that can be read, expected PNG, TIFF"));
   write_bytes(folder_ / "text.exr", std::string(5000, 'x'));
-  expect_bad_map("text.exr", StartsWith("text.exr: is not an image that can be read ("));
+  expect_bad_map("text.exr", StartsWith("text.exr: is not an image that can be read, expected PNG, TIFF"));
   write_bytes(folder_ / "map.unknown", "x");
-  expect_bad_map("map.unknown", StartsWith("map.unknown: is not an image that can be read ("));
+  expect_bad_map("map.unknown",
+                 StartsWith("map.unknown: is not an image that can be read, expected PNG, TIFF"));
   expect_bad_map("map.png", AllOf(StartsWith("map.png: has no channel 'Z', expected"), EndsWith(": Y")),
                  "--channel Z");
 }

@@ -150,7 +150,8 @@ TEST_F(Export, MeanEscapeThatIsUnknownIsRefused) {
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_bytes(folder_ / "f.json"));
   json["maps"][0]["mean_escape"] = 1.5;
   write_bytes(folder_ / "bad.json", json.dump());
-  expect_failure("export bad.json" + mean, "bad.json: maps: mean_escape of c is 1.5, expected 0 to 1");
+  expect_failure("export bad.json" + mean,
+                 "bad.json: maps/0/mean_escape is 1.5, expected a number from 0 to 1");
   json.erase("maps");
   write_bytes(folder_ / "old.json", json.dump());
   expect_failure("export old.json" + mean, "old.json: " + wanted);
@@ -219,6 +220,7 @@ TEST_F(Export, UnusableFitsAreRefused) {
   expect_failure("export bad.json --to glsl -o out.txt",
                  "bad.json: q of bounded tau is 1.5, expected 1e-06 to 1");
   json["bounded_tau"]["parameters"].erase("q");
+  json["bounded_tau"]["covariance"] = {{1e-6}};
   write_bytes(folder_ / "bad.json", json.dump());
   expect_failure("export bad.json --to glsl -o out.txt",
                  "bad.json: bounded tau has no parameter q, expected one");
