@@ -39,9 +39,10 @@ CommandResult CliTest::run(const std::string& arguments, const std::string& befo
 }
 
 CommandResult CliTest::run_interrupted(const std::string& arguments, const std::string& signal) const {
-  // Fields 14 and 15 of /proc/PID/stat: processor time in user and system mode, in ticks.
+  // A shell lets its jobs ignore SIGINT, which a program keeps. Fields 14 and 15 of /proc/PID/stat: processor
+  // time in user and system mode, in ticks.
   return run_shell(
-      fmt::format("cd '{}' && {{ '{}' {} --threads 1 & }} && pid=$! && polls=600 && "
+      fmt::format("cd '{}' && {{ env --default-signal '{}' {} --threads 1 & }} && pid=$! && polls=600 && "
                   "most=$(($(getconf CLK_TCK) * 3 / 2)) && "
                   "while [ $polls -gt 0 ] && read -r line </proc/$pid/stat && set -- $line && "
                   "[ $((${{14}} + ${{15}})) -lt $most ]; do polls=$((polls - 1)); sleep 0.1; done; "

@@ -15,6 +15,7 @@ std::vector<std::string> instruction_sets() {
 }
 
 void use_instruction_set(const std::string& name) {
+  hwy::SetSupportedTargetsForTest(0);  // all again
   for (const int64_t target : hwy::SupportedAndGeneratedTargets())
     if (name == hwy::TargetName(target)) {
       hwy::SetSupportedTargetsForTest(target);
