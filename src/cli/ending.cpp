@@ -43,7 +43,7 @@ Ending ending_of(const std::exception_ptr& exception) {
   } catch (const std::filesystem::filesystem_error& error) {
     return internal_error(error.what());
   } catch (const std::system_error& error) {
-    // Of std::thread and its like: the system allows no more of them.
+    // Names the limit of threads: that is what std::thread and its like throw for.
     return {kExitBadInput,
             fmt::format("the system refused: {}, expected fewer --threads", error.code().message())};
   } catch (const std::exception& error) {

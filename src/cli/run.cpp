@@ -68,7 +68,7 @@ std::optional<FitFile> fits_of(const Curves& curves, const RunOptions& options,
   }
 }
 
-// What a run found, besides the bake.
+// Holds what a run found, besides the bake.
 struct RunResults {
   Curves curves;
   Checks checks;

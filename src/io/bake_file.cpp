@@ -154,7 +154,7 @@ bool may_gain_light(const Provenance& provenance) {
          (cone != provenance.end() && cone->is_number() && cone->get<double>() < 180);
 }
 
-// What is not a number is an open hole, or was refused before.
+// Refuses values out of their range; what is not a number is an open hole, or was refused before.
 void check_ranges(const fs::path& path, const BakeFile& file) {
   const Bake& bake = file.bake;
   const double most = may_gain_light(file.provenance) ? kMostGainedLight : 1 + kRounding;

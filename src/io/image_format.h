@@ -12,7 +12,7 @@ struct ImageFormat {
   const char* name;    // "OpenEXR"
   // Most bytes of samples that a byte of the file can stand for; 0: no limit is known.
   double most_expansion;
-  // What the reader itself holds: of the whole image, bytes for each sample; 0: some rows.
+  // Says what the reader itself holds: bytes for each sample of the whole image; 0: some rows.
   double held_per_sample;
 };
 

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a path leads to: a file by device and number, or, where there is none yet, its folder and its name in
-// it.
+// Identifies what a path leads to: a file by device and number, or, where there is none yet, its folder and
+// its name in it.
 struct Place {
   dev_t device = 0;
   ino_t number = 0;
