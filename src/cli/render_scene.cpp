@@ -31,10 +31,11 @@ struct Recorded {
 
 Albedo read_albedo(const RenderOptions& options, const Bake& bake) {
   if (const auto constant = albedo_from_text(options.albedo)) return {*constant, {}};
-  ColorImage image = read_color_image(options.albedo);
-  if (image.colors.width != bake.width || image.colors.height != bake.height)
+  const ImageHeader header = read_image_header(options.albedo);
+  if (header.width != bake.width || header.height != bake.height)
     throw InputError(fmt::format("{}: is {} x {} texels, expected {} x {} as the bake is", options.albedo,
-                                 image.colors.width, image.colors.height, bake.width, bake.height));
+                                 header.width, header.height, bake.width, bake.height));
+  ColorImage image = read_color_image(options.albedo);
   const bool srgb =
       options.albedo_encoding == "srgb" || (options.albedo_encoding == "auto" && image.stored_as_integers);
   return with_file_context(options.albedo, [&] {

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/memory_limit.h"
+#include "core/printable.h"
 #include "io/file_context.h"
 
 namespace hemibake {
@@ -36,7 +37,8 @@ void ChannelReader::require_bytes_per_texel(double bytes) const {
 }
 
 void ChannelReader::refuse(const std::string& fault) const {
-  throw InputError(fmt::format("{}: {}", path_.string(), fault));
+  constexpr size_t kMostText = 2000;  // channels may have any names, and there may be thousands
+  throw InputError(fmt::format("{}: {}", path_.string(), excerpt(fault, kMostText)));
 }
 
 std::optional<int> find_channel(const std::vector<std::string>& channels, const std::string& name) {

@@ -3,9 +3,8 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/error.h"
+#include "core/printable.h"
 
 namespace hemibake {
 namespace {
@@ -72,8 +71,8 @@ GdalFaults::~GdalFaults() { gdal_.CPLPopErrorHandler(); }
 void GdalFaults::take(CPLErr severity, CPLErrorNum, const char* message) {
   auto& faults = *static_cast<GdalFaults*>(gdal_library().CPLGetErrorHandlerUserData());
   if (severity < CE_Failure || !faults.text_.empty()) return;
-  faults.text_ = message;
-  std::ranges::replace(faults.text_, '\n', ' ');
+  constexpr size_t kMostText = 300;
+  faults.text_ = excerpt(message, kMostText);
 }
 
 }  // namespace hemibake

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/printable.h"
 #include "io/input_file.h"
 #include "io/sample.h"
 #include "surface/surface.h"
@@ -72,14 +73,14 @@ SampleLayout parse_header(const std::filesystem::path& path, std::string_view he
   const auto type = parse_descr(descr);
   if (!type)
     refuse(path, fmt::format("holds numbers of type {}, expected integers or floats of one array",
-                             descr.substr(0, descr.find(','))));
+                             excerpt(descr.substr(0, descr.find(',')))));
   layout.type = *type;
   layout.is_column_major = after_key(header, "fortran_order").starts_with("True");
   const std::vector<uint64_t> shape = parse_shape(after_key(header, "shape"));
   const std::string_view text = after_key(header, "shape");
   if (shape.size() < 2 || shape.size() > 3 || (shape.size() == 3 && shape[2] != 1))
     refuse(path, fmt::format("is an array of shape {}, expected rows and columns",
-                             text.substr(0, text.find(')') + 1)));
+                             excerpt(text.substr(0, text.find(')') + 1))));
   if (shape[0] == 0 || shape[1] == 0 || shape[0] > kMaxTexels || shape[1] > kMaxTexels / shape[0])
     refuse(path,
            fmt::format("is an array of {} x {} numbers, expected 1 to {}", shape[0], shape[1], kMaxTexels));
