@@ -25,6 +25,11 @@ nlohmann::ordered_json recorded_files(const fs::path& record) {
   return nullptr;
 }
 
+// Returns whether a name stays in the folder of its record or below: a record leads nowhere else.
+bool is_inside(const fs::path& name) {
+  return !name.empty() && name.is_relative() && std::ranges::find(name, fs::path("..")) == name.end();
+}
+
 // Returns whether a JSON file says that it was made of one of the files: its provenance has that one's hash.
 bool is_made_of(const fs::path& path, const nlohmann::ordered_json& files) {
   try {
@@ -59,8 +64,7 @@ FileSetState file_set_state(const fs::path& record) {
   for (const auto& [name, hash] : files.items()) {
     const fs::path file = record.parent_path() / name;
     std::error_code not_there;
-    // A name only: a record leads nowhere else.
-    if (fs::path(name) != fs::path(name).filename()) continue;
+    if (!is_inside(name)) continue;
     if (!fs::is_regular_file(file, not_there))
       state.missing.push_back(name);
     else if (hash != sha256_of_file(file))

@@ -65,6 +65,9 @@ template <class Result>
 Result recorded(const RecordPlace& place, const ordered_json& key, size_t& made_now,
                 Result (*from)(const JsonReader&), const std::function<Result()>& work) {
   if (const std::optional<Result> found = find_record(place.path, key, from)) return *found;
+  // That of another study must not pass for what the work writes beside it, where this one is killed.
+  std::error_code not_there;
+  fs::remove(place.path, not_there);
   const std::string text = run_in_child(place.what, [&work] { return ordered_json(work()).dump(); });
   const ordered_json result = parse_json(text, place.what);
   write_json(place.path, {{"key", key}, {"result", result}});
