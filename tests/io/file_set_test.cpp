@@ -60,6 +60,16 @@ TEST(FileSet, TellsEveryMomentBetweenTwoNames) {
   }
 }
 
+TEST(FileSet, NamesFilesInFoldersBelowAndNoOthers) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "below");
+  write_bytes(folder / "below/a", "a2");
+  write_bytes(folder / "outside", "a2");
+  write_json(folder / "set.json",
+             {{"files", {{"below/a", "0"}, {"below/../outside", "0"}, {"/dev/null", "0"}}}});
+  EXPECT_THAT(file_set_state(folder / "set.json").changed, ElementsAre("below/a"));
+}
+
 TEST(FileSet, RecordsThatSayNothing) {
   const TemporaryFolder folder;
   for (const char* text : {"{}", "[]", "{\"files\": 3}", "{", "{\"files\": {\"../x\": \"0\", \"\": 1}}"}) {

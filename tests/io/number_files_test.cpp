@@ -102,6 +102,7 @@ TEST_F(HeightFiles, BrokenNpyIsRefused) {
   };
   expect(npy("'<f4'", "False", "(2,)", two), "is an array of shape (2,), expected rows and columns");
   expect(npy("'<f4'", "False", "(1, 1, 2)", two), "is an array of shape (1, 1, 2)");
+  expect(npy("'<f4'", "False", "(1,\n2, 2)", two), "is an array of shape (1, 2, 2), expected");
   expect(npy("'<f4'", "False", "(0, 2)", ""), "is an array of 0 x 2 numbers");
   expect(npy("'<f4'", "False", "(99999999999, 99999999999)", two), "expected 1 to");
   expect(npy("'<f4'", "False", "(1, 3)", two), "has 8 bytes of numbers, expected 12 of 3 x 1 32-bit floats");
