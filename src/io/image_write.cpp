@@ -178,7 +178,7 @@ class Writer {
   std::unique_ptr<OIIO::ImageOutput> output_;
 };
 
-OIIO::ImageSpec make_spec(int width, int height, std::span<const Plane> planes, OIIO::TypeDesc format,
+OIIO::ImageSpec make_spec(int width, int height, std::span<const Plane> planes, const OIIO::TypeDesc& format,
                           const Provenance& provenance) {
   OIIO::ImageSpec spec(width, height, static_cast<int>(planes.size()), format);
   for (size_t k = 0; k < planes.size(); ++k) spec.channelnames[k] = planes[k].channel;
