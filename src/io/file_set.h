@@ -1,6 +1,6 @@
-// Files that one command wrote together. One of them, the record, is JSON and names the others with their
-// SHA-256 under "files": files of two runs, as a run leaves that was killed between two names, are told by
-// it.
+// Files that one command wrote together. One of them, the record, is JSON and names the others, beside it or
+// in folders below, with their SHA-256 under "files": files of two runs, as a run leaves that was killed
+// between two names, are told by it.
 #pragma once
 
 #include <filesystem>
