@@ -105,9 +105,9 @@ GeoRaster checked_raster(const GdalLibrary& gdal, GDALDatasetH dataset, const fs
   const double texels = static_cast<double>(raster.width) * raster.height;
   int block_width = 0, block_height = 0;
   gdal.GDALGetBlockSize(gdal.GDALGetRasterBand(dataset, 1), &block_width, &block_height);
-  require_memory(
-      texels * kHeightBytesPerTexel + sizeof(double) * block_width * static_cast<double>(block_height),
-      fmt::format("{} x {} texels", raster.width, raster.height));
+  require_map_memory(
+      raster.width, raster.height,
+      texels * kHeightBytesPerTexel + sizeof(double) * block_width * static_cast<double>(block_height));
   return raster;
 }
 
