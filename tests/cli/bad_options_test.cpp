@@ -95,16 +95,16 @@ TEST_F(BadOptions, MemoryIsRefusedBeforeTheWork) {
 TEST_F(BadOptions, MemoryIsRefusedByTheHeader) {
   write_bytes(folder_ / "large.raw", std::string("\0\0\x80\x7f", 4));
   std::filesystem::resize_file(folder_ / "large.raw", 4 * 3000 * 3000);
-  const std::string large = " large.raw --raw 3000x3000:f32le --memory 0.5";
+  const std::string large = "large.raw --raw 3000x3000:f32le --memory 0.5";
   const auto line = AllOf(StartsWith("large.raw: has 3000 x 3000 texels, which need "),
                           HasSubstr("GiB, expected at most the 0.5 GiB of --memory: "));
-  expect_refusal("bake -o bake.exr --outputs ao" + large, line);
-  expect_refusal("bake -o bake.exr --outputs ao --tracer embree --edge open" + large, line);
-  expect_refusal("run -o results" + large, line);
-  expect_refusal("textures -o textures --maps ao" + large, line);
+  expect_refusal("bake " + large + " -o bake.exr --outputs ao", line);
+  expect_refusal("bake " + large + " -o bake.exr --outputs ao --tracer embree --edge open", line);
+  expect_refusal("run " + large + " -o results", line);
+  expect_refusal("textures " + large + " -o textures --maps ao", line);
   // These need no more than reading does.
-  expect_refusal("bake --dry-run" + large, HasSubstr("inf"));
-  expect_refusal("textures -o textures --maps svf" + large, HasSubstr("inf"));
+  expect_refusal("bake " + large + " --dry-run", HasSubstr("inf"));
+  expect_refusal("textures " + large + " -o textures --maps svf", HasSubstr("inf"));
 }
 
 TEST_F(BadOptions, OfTheOtherCommands) {
