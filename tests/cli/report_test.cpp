@@ -186,7 +186,7 @@ TEST_F(Report, RefusesRecordsOfOtherTypes) {
     run_well("report out");
     std::filesystem::remove(folder_ / "out/report.html");
     for (const std::string& place : places)
-      for (const json& wrong : {json("text"), json(1), json(json::array({json::object()})), json(nullptr)}) {
+      for (const json& wrong : {json("text"), json(json::array({json::object()}))}) {
         json& value = whole.at(json::json_pointer("/" + place));
         if (wrong.type() == value.type() || (wrong.is_number() && value.is_number())) continue;
         if (wrong.is_null() &&
