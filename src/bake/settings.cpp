@@ -199,6 +199,7 @@ std::vector<Field> map_fields(MapSettings& s) {
 }
 
 // In the order of the record; the help sorts by group.
+// NOLINTNEXTLINE(readability-function-size): one list
 std::vector<Field> bake_fields(BakeSettings& s) {
   const auto marches = [&s] { return s.tracer == TracerKind::kMarch; };
   const auto shoots_rays = [&s] { return s.tracer == TracerKind::kEmbree; };

@@ -92,8 +92,8 @@ Value kept_text(T& variable) {
   Value value;
   value.type = "TEXT";
   value.get = [&variable]() -> std::optional<std::string> {
-    const std::string text(variable);
-    return text.empty() ? std::nullopt : std::optional(text);
+    std::string text(variable);
+    return text.empty() ? std::nullopt : std::optional(std::move(text));
   };
   value.set = [&variable](const Words& words) { variable = words.at(0); };
   return value;
@@ -195,7 +195,7 @@ Value choice(std::string& variable, Words names) {
   return value;
 }
 
-Value choices(Words& variable, Words names) {
+Value choices(Words& variable, const Words& names) {
   return choices_of(
       names,
       [&variable, names] {

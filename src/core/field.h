@@ -68,7 +68,7 @@ Value choices_of(std::vector<std::string> names, std::function<std::vector<size_
                  std::function<void(const std::vector<size_t>&)> set);
 
 Value choice(std::string& variable, std::vector<std::string> names);
-Value choices(std::vector<std::string>& variable, std::vector<std::string> names);
+Value choices(std::vector<std::string>& variable, const std::vector<std::string>& names);
 
 // An enumeration whose enumerators are 0, 1, … in the order of `names`.
 template <class Enum>

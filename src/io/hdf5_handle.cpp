@@ -19,7 +19,8 @@ herr_t collect_reason(unsigned depth, const H5E_error2_t* entry, void* reason_po
   // HDF5 gives the errno only in words: "file write failed: time = …, errno = 28, error message = …".
   constexpr std::string_view kMark = "errno = ";
   const size_t mark = text.find(kMark);
-  if (mark != std::string_view::npos) reason.error_number = std::atoi(text.data() + mark + kMark.size());
+  if (mark != std::string_view::npos)
+    reason.error_number = static_cast<int>(std::strtol(text.data() + mark + kMark.size(), nullptr, 10));
   return 0;
 }
 

@@ -108,10 +108,11 @@ bool is_targa(const std::filesystem::path& path, std::string_view head) {
   constexpr size_t kHeaderBytes = 18;
   constexpr std::string_view kFooter = "TRUEVISION-XFILE."sv;
   if (head.size() < kHeaderBytes) return false;
-  const int color_map = head[1], kind = head[2], bits = head[16];
+  const auto byte_at = [&](size_t place) { return int{static_cast<unsigned char>(head[place])}; };
+  const int color_map = byte_at(1), kind = byte_at(2), bits = byte_at(16);
   const bool is_kind = (kind >= 1 && kind <= 3) || (kind >= 9 && kind <= 11);
   const bool is_depth = bits == 8 || bits == 15 || bits == 16 || bits == 24 || bits == 32;
-  if (!is_kind || !is_depth || color_map < 0 || color_map > 1) return false;
+  if (!is_kind || !is_depth || color_map > 1) return false;
   if (lower_case_extension(path) == ".tga") return true;
   std::ifstream file(path, std::ios::binary);
   std::string end(kFooter.size(), '\0');

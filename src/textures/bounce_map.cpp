@@ -95,7 +95,8 @@ MappedLight mean_light(const LightBlock& block, const TexelBox& box) {
   const double share = 1.0 / (box.width * box.height);
   for (int y = box.y; y < box.y + box.height; ++y)
     for (int x = box.x; x < box.x + box.width; ++x) {
-      const MappedLight& light = block.texels[static_cast<size_t>(y * block.width + x)];
+      const MappedLight& light =
+          block.texels[static_cast<size_t>(y) * static_cast<size_t>(block.width) + static_cast<size_t>(x)];
       mean.visibility += share * light.visibility;
       mean.bounce += share * light.bounce;
       for (size_t a = 0; a < mean.irradiance.size(); ++a) mean.irradiance[a] += share * light.irradiance[a];

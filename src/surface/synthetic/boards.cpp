@@ -2,6 +2,7 @@
 // map's longer side.
 #include <algorithm>
 #include <cmath>
+#include <glm/vec2.hpp>
 
 #include "surface/synthetic/kinds.h"
 
@@ -18,9 +19,10 @@ struct PiecePoint {
   uint64_t bits;
 };
 
-// Returns the piece of a floor of `columns` by `rows` cells. shift: of row j, in columns.
+// Returns the piece at a point of a floor of pieces. cells: columns and rows. shift: of row j, in columns.
 template <class Shift>
-PiecePoint piece_at(double x, double y, Tile tile, int columns, int rows, uint64_t seed, const Shift& shift) {
+PiecePoint piece_at(double x, double y, Tile tile, glm::ivec2 cells, uint64_t seed, const Shift& shift) {
+  const int columns = cells.x, rows = cells.y;
   // Half a cell on, so that the map's border runs through pieces.
   const double v = y / tile.height * rows + 0.5;
   const int row = wrap_index(static_cast<int>(std::floor(v)), rows);
@@ -51,7 +53,7 @@ Grid<float> make_planks(const SyntheticOptions& options) {
   const FractalNoise rot{.frequency = 14, .highest_frequency = 60, .gain = 0.6, .seed = seed(1)};
   return fill_points(options, [&](double x, double y) {
     const PiecePoint board =
-        piece_at(x, y, tile, columns, rows, seed(2), [&](int row) { return hash_unit(seed(3), row, 0); });
+        piece_at(x, y, tile, {columns, rows}, seed(2), [&](int row) { return hash_unit(seed(3), row, 0); });
     // Rot eats at the sides here and there.
     const double eaten = 0.012 * smooth_step(0.1, 0.7, grain_noise(x, y, tile, 3, rot));
     const double inside = board.inside - 0.005 - eaten;
@@ -74,7 +76,7 @@ Grid<float> make_tiles(const SyntheticOptions& options) {
   const FractalNoise mortar{
       .frequency = 40, .highest_frequency = highest_frequency(options), .gain = 0.6, .seed = seed(0)};
   return fill_points(options, [&](double x, double y) {
-    const PiecePoint piece = piece_at(x, y, tile, columns, rows, seed(1), [](int) { return 0.0; });
+    const PiecePoint piece = piece_at(x, y, tile, {columns, rows}, seed(1), [](int) { return 0.0; });
     const double bed = 0.0015 * fractal_noise(x, y, tile, mortar);
     const double joint = 0.012 + bed;
     const double inside = piece.inside - 0.007;
