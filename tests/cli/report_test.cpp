@@ -188,12 +188,7 @@ TEST_F(Report, RefusesRecordsOfOtherTypes) {
     for (const std::string& place : places)
       for (const json& wrong : {json("text"), json(json::array({json::object()}))}) {
         json& value = whole.at(json::json_pointer("/" + place));
-        if (wrong.type() == value.type() || (wrong.is_number() && value.is_number())) continue;
-        if (wrong.is_null() &&
-            (place.ends_with("value") || place.ends_with("slope") || place.ends_with("settings")))
-          continue;
-        if (place.ends_with("slope") ? wrong.is_number() : place.ends_with("rays") && wrong.is_string())
-          continue;
+        if (wrong.type() == value.type() || (place.ends_with("rays") && wrong.is_string())) continue;
         const json before = std::exchange(value, wrong);
         write_bytes(folder_ / "out" / name, whole.dump());
         value = before;
