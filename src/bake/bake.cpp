@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "bake/crop.h"
 #include "bake/make_tracer.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "surface/facets.h"
+#include "tracers/embree/embree.h"
 #include "transport/direct_light.h"
 #include "transport/links/spill_file.h"
 
@@ -17,17 +20,21 @@ namespace {
 constexpr double kGib = 1024.0 * 1024 * 1024;
 constexpr uint64_t kErrorSeed = 0x5eed;  // added to the user's: the tracer that tells the noise
 
-PlanOptions plan_options(const Surface& surface, const BakeSettings& settings) {
+PlanOptions plan_options(uint32_t texels, uint32_t facets, const BakeSettings& settings) {
   const bool irradiance = settings.wants(BakeOutput::kIrradiance);
   PlanOptions plan;
   plan.patch_kind = *settings.patch_kind;
   plan.with_links = settings.needs_form_factors();
   plan.bounces = irradiance ? settings.bounces : 0;
   plan.converges = settings.converge.has_value();
-  plan.scene_bytes = tracer_bytes(surface, settings);
+  plan.scene_bytes = tracer_bytes(texels, facets, settings);
   if (settings.wants(BakeOutput::kNormal)) plan.kept_planes += 3;
   if (irradiance && !plan.with_links) plan.kept_planes += 3;  // E₀, total, residual
   return plan;
+}
+
+PlanOptions plan_options(const Surface& surface, const BakeSettings& settings) {
+  return plan_options(surface.texel_count(), facet_count(surface), settings);
 }
 
 double allowed_bytes(const BakeSettings& settings) {
@@ -37,9 +44,7 @@ double allowed_bytes(const BakeSettings& settings) {
 void refuse_beyond_memory(const BakeSettings& settings, const BakePlan& plan) {
   const double needed = static_cast<double>(plan.memory_bytes()), allowed = allowed_bytes(settings);
   if (needed <= allowed) return;
-  throw SettingError(fmt::format("the bake needs {:.3g} GiB, expected at most the {:.3g} GiB of {}",
-                                 needed / kGib, allowed / kGib,
-                                 settings.memory_gib ? "{memory}" : "this machine"));
+  throw SettingError("the bake needs " + memory_fault(needed, settings.memory_gib));
 }
 
 TargetOptions target_options(const LoadedMap& map, const BakeSettings& settings) {
@@ -122,6 +127,20 @@ void keep_planes(const Surface& surface, LightTransport& transport, BakeResult& 
 }
 
 }  // namespace
+
+double least_bake_bytes(int width, int height, const MapSettings& map, const BakeSettings& settings) {
+  const auto texels = static_cast<uint32_t>(width) * static_cast<uint32_t>(height);
+  const int border = map.edge == Edge::kWrap ? 0 : 1;
+  const uint32_t facets = 2 * static_cast<uint32_t>(width - border) * static_cast<uint32_t>(height - border);
+  const size_t patches =
+      *settings.patch_kind == PatchKind::kTexels ? texels : size_t{facets} * kCoarseNodes;
+  PlanOptions options = plan_options(texels, facets, settings);
+  // Open holes may turn slices into rays (resolve_for_holes).
+  if (map.holes == Holes::kOpen && settings.tracer_is_default)
+    options.scene_bytes = std::min(options.scene_bytes, embree_scene_bytes(facets));
+  const BakePlan plan = plan_planes(texels, patches, options);
+  return static_cast<double>(plan.memory_bytes() - BakePlan::kProgramBytes);
+}
 
 PreparedBake prepare_bake(const LoadedMap& map, const BakeSettings& settings, MemoryLimit limit) {
   PreparedBake prepared;

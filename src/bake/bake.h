@@ -42,6 +42,10 @@ struct BakeResult {
   double seconds = 0, cpu_seconds = 0, trace_cpu_seconds = 0;
 };
 
+// Returns the bytes, beside the program's, that the plan of a bake comes to at least.
+// width, height: texels of the file; settings: resolved.
+double least_bake_bytes(int width, int height, const MapSettings& map, const BakeSettings& settings);
+
 enum class MemoryLimit { kEnforced, kPlannedOnly };
 
 // Chooses what a target error leaves open, builds the tracer and plans the memory. settings: resolved. Throws

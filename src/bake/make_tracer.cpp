@@ -60,16 +60,16 @@ std::unique_ptr<Tracer> make_tracer(const LoadedMap& map, const BakeSettings& se
   return make_march_tracer(map.surface, march_options(map, settings));
 }
 
-size_t tracer_bytes(const Surface& surface, const BakeSettings& settings) {
+size_t tracer_bytes(uint32_t texels, uint32_t facets, const BakeSettings& settings) {
   switch (*settings.tracer) {
     case TracerKind::kEmbree:
-      return embree_scene_bytes(surface);
+      return embree_scene_bytes(facets);
     case TracerKind::kSlice:
-      return slice_tracer_bytes(surface, slice_options(settings), settings.needs_form_factors());
+      return slice_tracer_bytes(texels, slice_options(settings), settings.needs_form_factors());
     case TracerKind::kMarch:
       break;
   }
-  return size_t{8} * surface.texel_count();
+  return size_t{8} * texels;
 }
 
 }  // namespace hemibake

@@ -13,6 +13,7 @@ namespace hemibake {
 std::unique_ptr<Tracer> make_tracer(const LoadedMap& map, const BakeSettings& settings);
 
 // Returns the bytes that tracer will take, about.
-size_t tracer_bytes(const Surface& surface, const BakeSettings& settings);
+// texels, facets: of the surface; settings: resolved.
+size_t tracer_bytes(uint32_t texels, uint32_t facets, const BakeSettings& settings);
 
 }  // namespace hemibake

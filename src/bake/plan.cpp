@@ -78,8 +78,7 @@ void add_pilot(const Pilot& pilot, uint32_t count, BakePlan& plan) {
 
 }  // namespace
 
-BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
-  const size_t texels = surface.texel_count();
+BakePlan plan_planes(size_t texels, size_t patches, const PlanOptions& options) {
   BakePlan plan;
   plan.surface_bytes = texels * 16 + options.scene_bytes;
   // α, E₀/π and the bent normal; then every bounce, total and residual as planes; under way, four vectors of
@@ -87,12 +86,16 @@ BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
   // in the bounces and three in the estimate of errors: the allocator keeps the former.
   plan.plane_bytes = texels * (20 + 4 * static_cast<size_t>(options.kept_planes));
   if (options.with_links) {
-    const size_t patches = make_patches(surface, options.patch_kind).count;
     plan.plane_bytes += texels * (4 * static_cast<size_t>(options.bounces + 5) + 32) + patches * 64;
     // Light and residual of the solver, the four directions it keeps, and at most 32 bytes for its groups.
     if (options.converges) plan.plane_bytes += texels * 8 + patches * (8 * (2 + 2 * 4) + 32);
   }
   return plan;
+}
+
+BakePlan plan_planes(const Surface& surface, const PlanOptions& options) {
+  return plan_planes(surface.texel_count(),
+                     options.with_links ? make_patches(surface, options.patch_kind).count : 0, options);
 }
 
 BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptions& options) {

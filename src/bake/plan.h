@@ -38,7 +38,9 @@ struct PlanOptions {
   int kept_planes = 0;     // results kept beside what tracing and links take
 };
 
-// Without tracing: all but links and seconds.
+// Plans without tracing: all but links and seconds.
+// texels, patches: of the surface.
+BakePlan plan_planes(size_t texels, size_t patches, const PlanOptions& options);
 BakePlan plan_planes(const Surface& surface, const PlanOptions& options);
 
 // Adds links and seconds from a pilot of a thousand texels and as many patches, in groups spread over the

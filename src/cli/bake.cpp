@@ -68,7 +68,8 @@ MapOutcome say_beforehand(const BakeCommandOptions& options, const PreparedBake&
 MapOutcome bake_one(BakeCommandOptions options, Again again, const Invocation& invocation) {
   if (options.writes()) check_outputs(options);
   options.bake.spill_folder = options.output.parent_path();
-  const MemoryScope memory(options.bake.memory_gib);
+  const MemoryScope memory(options.bake.memory_gib,
+                           options.writes() ? need_of_bake(options, again, options.output) : MapNeed());
   const LoadedMap map = load_map(options.map, options.bake.normal_length);
   if (again == Again::kSkip && records(options.output, wanted_record(map, options.bake)))
     return skipped(options.map.map, options.output);

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <map>
 
+#include "bake/bake.h"
 #include "bake/record.h"
 #include "cli/print/streams.h"
 #include "core/error.h"
@@ -122,6 +123,14 @@ Provenance wanted_record(const LoadedMap& map, const BakeSettings& settings) {
   if (settings.target_error)
     for (const char* chosen : {"rays", "bounces"}) wanted.erase(chosen);
   return wanted;
+}
+
+MapNeed need_of_bake(const BakeOptions& options, Again again, const fs::path& made) {
+  std::error_code not_there;
+  if (again == Again::kSkip && fs::is_regular_file(made, not_there)) return {};
+  return [&options](int width, int height) {
+    return least_bake_bytes(width, height, options.map, options.bake);
+  };
 }
 
 bool records(const fs::path& image, const Provenance& wanted) {

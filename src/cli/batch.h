@@ -9,7 +9,9 @@
 
 #include "bake/load.h"
 #include "bake/settings.h"
+#include "cli/options/bake_options.h"
 #include "cli/options/command.h"
+#include "core/memory_limit.h"
 #include "io/provenance.h"
 
 namespace hemibake {
@@ -24,6 +26,10 @@ struct MapOutcome {
 
 // Says whether a map is done again whose results are there already.
 enum class Again { kSkip, kMake };
+
+// Returns the memory that the bake of a map needs at least, for a MemoryScope; none where it may be done
+// already: it is read to see. options: resolved, must outlive what is returned; made: what is there then.
+MapNeed need_of_bake(const BakeOptions& options, Again again, const std::filesystem::path& made);
 
 // Replaces the field MAP by one for several maps and folders.
 void take_several_maps(std::vector<Field>& fields, std::vector<std::string>& maps);

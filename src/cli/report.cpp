@@ -47,6 +47,7 @@ int run_report(ReportOptions options, const Invocation& invocation) {
   const ReportFolder folder = read_report_folder(options.folder);
   check_output_path(options.output, {".html", ".htm"});
   refuse_overwriting_inputs({options.output}, inputs_of(options.folder));
+  for (const std::string& warning : folder.warnings) print_message(warning);
   for (const char* record : kRecords)
     for (const std::string& name : file_set_state(options.folder / record).missing)
       print_message(

@@ -123,7 +123,8 @@ MapOutcome run_one(RunOptions options, Again again, const Invocation& invocation
   check_outputs(options);
 
   options.bake.spill_folder = options.folder;
-  const MemoryScope memory(options.bake.memory_gib);
+  const MemoryScope memory(options.bake.memory_gib,
+                           need_of_bake(options, again, options.folder / "bake.exr"));
   const LoadedMap map = load_map(options.map, options.bake.normal_length);
   if (again == Again::kSkip && was_run(options, map)) return skipped(options.map.map, options.folder);
   print_warnings(options.map.map.string(), warnings_of(map));

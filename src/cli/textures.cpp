@@ -135,11 +135,15 @@ void resolve_bake_of_map(TexturesOptions& options, const Invocation& invocation)
   options.bake.spill_folder = options.folder;
 }
 
-// Loads the map that is to be baked. options: their bake is resolved afterwards.
-LoadedMap load_map_to_bake(TexturesOptions& options, const Invocation& invocation) {
+// Loads the map that is to be baked. options: their bake is resolved afterwards; name: of the textures.
+LoadedMap load_map_to_bake(TexturesOptions& options, Again again, const std::string& name,
+                           const Invocation& invocation) {
   try {
     resolve_bake_of_map(options, invocation);
-    const MemoryScope memory(options.bake.memory_gib);
+    const fs::path made = texture_paths(options.textures, options.folder, name)[0];
+    const MemoryScope memory(options.bake.memory_gib, options.textures.wants_bake()
+                                                          ? need_of_bake(options, again, made)
+                                                          : MapNeed());
     return load_map(options.map, options.bake.normal_length);
   } catch (const SettingError& error) {
     throw InputError(with_names_of_textures(error.with_prefix("--")));
@@ -193,7 +197,7 @@ MapOutcome make_one(TexturesOptions options, Again again, const Invocation& invo
   if (is_bake(options.map.map))
     refuse_options_of_a_bake(options, invocation);
   else
-    map = load_map_to_bake(options, invocation);
+    map = load_map_to_bake(options, again, name, invocation);
   if (again == Again::kSkip && were_made(options, map, name)) return skipped(options.map.map, options.folder);
   nlohmann::ordered_json json = {{"output", options.folder.string()}, {"input", options.map.map.string()}};
   if (map) {

@@ -53,6 +53,20 @@ void check_folder(const TradeOptions& options) {
     }
 }
 
+// Loads the map for a child process, whose errors come back as text: they name options here already.
+Surface load_surface(const TradeOptions& options) {
+  const MemoryScope memory(options.memory_gib);
+  try {
+    Surface surface = load_map(options.map).surface;
+    if (!surface.holes.empty())
+      throw SettingError("has open holes, which only rays know, expected {holes} fill for a study",
+                         options.map.map.string());
+    return surface;
+  } catch (const SettingError& error) {
+    throw InputError(error.with_prefix("--"));
+  }
+}
+
 // Writes the table and its record, which names it.
 void write_results(const fs::path& folder, const Study& study, nlohmann::ordered_json json) {
   OutputSet files;
@@ -80,14 +94,7 @@ int run_trade(TradeOptions& options, const Invocation& invocation) {
   study.provenance = make_provenance(invocation.context.command);
   record_map(options.map, hash_files(options.map), study.provenance);
   // Runs in the child: this process must not start threads.
-  study.load = [&options] {
-    const MemoryScope memory(options.memory_gib);
-    Surface surface = load_map(options.map).surface;
-    if (!surface.holes.empty())
-      throw InputError(options.map.map.string() +
-                       ": has open holes, which only rays know, expected --holes fill for a study");
-    return surface;
-  };
+  study.load = [&options] { return load_surface(options); };
   study.reference.effort = effort_of(options.effort);
   study.reference.memory_bytes = static_cast<size_t>(options.memory_gib * 1024 * 1024 * 1024);
   const Study result = run_study(study);

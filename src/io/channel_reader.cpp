@@ -32,8 +32,7 @@ std::optional<int> parse_index(const std::string& text, int count) {
 
 void ChannelReader::require_bytes_per_texel(double bytes) const {
   const double texels = static_cast<double>(facts_.width) * facts_.height;
-  with_file_context(
-      path_, [&] { require_memory(texels * bytes, fmt::format("{} x {} texels", width(), height())); });
+  with_file_context(path_, [&] { require_map_memory(width(), height(), texels * bytes); });
 }
 
 void ChannelReader::refuse(const std::string& fault) const {

@@ -3,8 +3,9 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <string>
+
 #include "core/error.h"
-#include "core/printable.h"
 
 namespace hemibake {
 namespace {
@@ -41,7 +42,7 @@ void* find_function(void* library, const char* name) {
 
 GdalLibrary load_library() {
   void* library = dlopen(HEMIBAKE_GDAL_LIBRARY, RTLD_NOW | RTLD_LOCAL);
-  if (!library) refuse_library(dlerror());
+  if (!library) refuse_library("it or a library that it needs is missing");
   GdalLibrary gdal;
 #define HEMIBAKE_GDAL_LOAD(name) \
   gdal.name = reinterpret_cast<decltype(gdal.name)>(find_function(library, #name));
@@ -68,11 +69,9 @@ GdalFaults::GdalFaults(const GdalLibrary& gdal) : gdal_(gdal) { gdal_.CPLPushErr
 
 GdalFaults::~GdalFaults() { gdal_.CPLPopErrorHandler(); }
 
-void GdalFaults::take(CPLErr severity, CPLErrorNum, const char* message) {
+void GdalFaults::take(CPLErr severity, CPLErrorNum, const char*) {
   auto& faults = *static_cast<GdalFaults*>(gdal_library().CPLGetErrorHandlerUserData());
-  if (severity < CE_Failure || !faults.text_.empty()) return;
-  constexpr size_t kMostText = 300;
-  faults.text_ = excerpt(message, kMostText);
+  if (severity >= CE_Failure) faults.found_ = true;
 }
 
 }  // namespace hemibake

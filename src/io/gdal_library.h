@@ -10,7 +10,6 @@
 #include <ogr_srs_api.h>
 
 #include <memory>
-#include <string>
 
 namespace hemibake {
 
@@ -55,7 +54,7 @@ struct GdalLibrary {
 // InputError where this machine has none that fits.
 const GdalLibrary& gdal_library();
 
-// Collects the faults GDAL finds on this thread while it lives. Nothing reaches the terminal.
+// Notes whether GDAL finds a fault on this thread while it lives. Nothing reaches the terminal.
 class GdalFaults {
  public:
   explicit GdalFaults(const GdalLibrary& gdal);
@@ -63,14 +62,13 @@ class GdalFaults {
   GdalFaults(const GdalFaults&) = delete;
   GdalFaults& operator=(const GdalFaults&) = delete;
 
-  // The first fault in one line; empty: none.
-  const std::string& text() const { return text_; }
+  bool found() const { return found_; }
 
  private:
   static void CPL_STDCALL take(CPLErr severity, CPLErrorNum number, const char* message);
 
   const GdalLibrary& gdal_;
-  std::string text_;
+  bool found_ = false;
 };
 
 struct GdalDatasetCloser {

@@ -84,7 +84,9 @@ void check_sources(const fs::path& path, int depth = 0) {
 GdalDataset open_dataset(const GdalLibrary& gdal, const fs::path& path) {
   check_sources(path);
   if (const std::string fault = netcdf_error(path); !fault.empty()) throw InputError(fault);
-  GdalDataset dataset(gdal.GDALOpenEx(fs::absolute(path).string().c_str(),
+  std::error_code no_folder;
+  const fs::path whole = fs::absolute(path, no_folder);
+  GdalDataset dataset(gdal.GDALOpenEx((no_folder ? path : whole).string().c_str(),
                                       GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
                                       nullptr, nullptr));
   if (!dataset)
@@ -105,9 +107,9 @@ GeoRaster checked_raster(const GdalLibrary& gdal, GDALDatasetH dataset, const fs
   const double texels = static_cast<double>(raster.width) * raster.height;
   int block_width = 0, block_height = 0;
   gdal.GDALGetBlockSize(gdal.GDALGetRasterBand(dataset, 1), &block_width, &block_height);
-  require_memory(
-      texels * kHeightBytesPerTexel + sizeof(double) * block_width * static_cast<double>(block_height),
-      fmt::format("{} x {} texels", raster.width, raster.height));
+  require_map_memory(
+      raster.width, raster.height,
+      texels * kHeightBytesPerTexel + sizeof(double) * block_width * static_cast<double>(block_height));
   return raster;
 }
 

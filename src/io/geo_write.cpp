@@ -8,6 +8,7 @@
 
 #include "core/context.h"
 #include "core/error.h"
+#include "io/file_context.h"
 #include "io/gdal_library.h"
 
 namespace hemibake {
@@ -57,7 +58,7 @@ class GeoWriter {
     const GdalDataset dataset(gdal_.GDALCreate(gdal_.GDALGetDriverByName("GTiff"), path, width_, height_,
                                                static_cast<int>(planes_.size()), GDT_Float32,
                                                const_cast<char**>(options)));
-    if (!dataset) return;  // the fault says why
+    if (!dataset) return;  // which is a fault
     describe(dataset.get(), provenance);
     for (int begin = 0; begin < height_; begin += kRowsPerBlock) {
       throw_if_cancelled();
@@ -71,8 +72,10 @@ class GeoWriter {
     if (transform != std::array<double, 6>{}) gdal_.GDALSetGeoTransform(dataset, transform.data());
     if (!tag_.place.crs.empty()) {
       const GdalReference reference(gdal_.OSRNewSpatialReference(tag_.place.crs.c_str()));
-      if (reference) gdal_.OSRSetAxisMappingStrategy(reference.get(), OAMS_TRADITIONAL_GIS_ORDER);
-      if (reference) gdal_.GDALSetSpatialRef(dataset, reference.get());
+      if (!reference)
+        throw InputError("its place on the earth has a coordinate system that is not known, expected WKT");
+      gdal_.OSRSetAxisMappingStrategy(reference.get(), OAMS_TRADITIONAL_GIS_ORDER);
+      gdal_.GDALSetSpatialRef(dataset, reference.get());
     }
     gdal_.GDALSetMetadataItem(dataset, "TIFFTAG_IMAGEDESCRIPTION", provenance.dump().c_str(), nullptr);
     for (size_t k = 0; k < planes_.size(); ++k) {
@@ -123,9 +126,14 @@ void write_geo_tiff(OutputFile& file, int width, int height, std::span<const Pla
   const GdalLibrary& gdal = gdal_library();
   const GdalFaults faults(gdal);
   const MemoryFile memory(gdal, &file);
-  GeoWriter(gdal, width, height, planes, tag).write(memory.name(), provenance);
-  if (!faults.text().empty())
-    throw InputError(fmt::format("{}: could not write: {}", file.path().string(), faults.text()));
+  with_file_context(file.path(), [&] {
+    GeoWriter(gdal, width, height, planes, tag).write(memory.name(), provenance);
+    if (faults.found())
+      throw InputError(
+          fmt::format("could not be made a GeoTIFF of {} x {} texels in {} bands, expected what GeoTIFF and "
+                      "memory hold: write an .exr",
+                      width, height, planes.size()));
+  });
   file.write(memory.bytes());
 }
 

@@ -169,7 +169,10 @@ class Writer {
 
   [[noreturn]] void fail() const {
     if (proxy_.error_number() != 0) fail_write(file_.path(), proxy_.error_number());
-    throw InputError(fmt::format("{}: could not write: {}", file_.path().string(), output_->geterror()));
+    output_->geterror();  // clears it: the library prints what nobody asked for
+    throw InputError(fmt::format("{}: could not write {} x {} texels in {} channels, expected what {} holds",
+                                 file_.path().string(), spec_.width, spec_.height, spec_.nchannels,
+                                 output_->format_name()));
   }
 
   const OutputFile& file_;

@@ -176,7 +176,8 @@ void write_links(OutputFile& output, const FormFactorMatrix& final_gather, const
     file.close();
   } catch (const Hdf5Error& error) {
     if (error.error_number != 0) fail_write(path, error.error_number);
-    throw InputError(fmt::format("{}: could not write: {}", path.string(), error.what()));
+    throw InputError(
+        fmt::format("{}: could not be made a file of HDF5, expected free memory and disk", path.string()));
   }
   std::error_code error;
   layout.file_bytes = fs::file_size(output.temporary_path(), error);

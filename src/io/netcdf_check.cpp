@@ -99,7 +99,9 @@ std::string netcdf_error(const std::filesystem::path& path) {
   ClassicHeader header(path);
   if (!header.is_classic()) return "";
   const uint64_t end = header.end_of_variables();
-  const uint64_t size = std::filesystem::file_size(path);
+  std::error_code gone;
+  const uint64_t size = std::filesystem::file_size(path, gone);
+  if (gone) return "could not read: " + gone.message();
   if (end > 0 && end <= size) return "";
   if (end == 0) return "holds no whole variable, expected a whole file of netCDF";
   return fmt::format("is cut short: has {} bytes, expected {}", size, end);

@@ -18,7 +18,8 @@ OIIO::ROI measure(std::string_view text, int size) {
 }  // namespace
 
 bool has_font() {
-  static const bool found = std::filesystem::exists(kFont) && measure("x", 16).defined();
+  std::error_code not_there;
+  static const bool found = std::filesystem::exists(kFont, not_there) && measure("x", 16).defined();
   return found;
 }
 

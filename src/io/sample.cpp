@@ -64,8 +64,7 @@ double decode_sample(const char* bytes, const SampleType& type) {
 void require_read_memory(const std::filesystem::path& path, const SampleLayout& layout) {
   const double texels = static_cast<double>(layout.width) * layout.height;
   with_file_context(path, [&] {
-    require_memory(texels * (layout.type.bytes + kHeightBytesPerTexel),
-                   fmt::format("{} x {} texels", layout.width, layout.height));
+    require_map_memory(layout.width, layout.height, texels * (layout.type.bytes + kHeightBytesPerTexel));
   });
 }
 

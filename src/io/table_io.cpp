@@ -118,7 +118,10 @@ Table read_csv(const fs::path& path) {
       throw InputError(fmt::format("{}:{}: more than {} cells, expected fewer", path.string(), lines.number(),
                                    kMaxTableCells));
   };
-  check_size(static_cast<size_t>(std::ranges::count(*header, ',')));
+  const auto columns = static_cast<size_t>(std::ranges::count(*header, ',')) + 1;
+  if (columns > kMaxTableColumns)
+    throw InputError(
+        fmt::format("{}:1: has {} columns, expected at most {}", path.string(), columns, kMaxTableColumns));
   Table table;
   for (const std::string_view name : split(*header, ',')) table.columns.emplace_back(name);
   if (const std::string error = column_error(table.columns); !error.empty())

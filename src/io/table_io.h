@@ -13,6 +13,7 @@
 namespace hemibake {
 
 constexpr size_t kMaxTableBytes = size_t{256} << 20;
+constexpr size_t kMaxTableColumns = size_t{1} << 16;
 constexpr size_t kMaxTableCells = size_t{1} << 24;  // of read_csv; a line counts as four more
 
 // Columns by name; a missing cell is empty.
@@ -24,7 +25,8 @@ struct Table {
 // Reads one header line of names, then one line of numbers per row, separated by commas; an empty cell is
 // missing. Takes LF and CRLF line ends, a last line without one, and a byte-order mark. Throws InputError
 // naming file, line and column for a name that is empty or repeated, a row of another length, a cell that is
-// not a finite number, and more than kMaxTableBytes or kMaxTableCells.
+// not a finite number, and more than kMaxTableBytes, kMaxTableColumns or
+// kMaxTableCells.
 Table read_csv(const std::filesystem::path& path);
 
 // Writes numbers in the shortest form that reads back exactly. Throws std::logic_error for a table that

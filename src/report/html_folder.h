@@ -36,10 +36,11 @@ struct ReportFolder {
   std::vector<SweepCurves> sweep;  // AMPLITUDE.csv in the folder or in its folder `sweep`, in rising order
   std::vector<ReportPicture>
       pictures;  // of render.json in the folder or in its folder `pictures`, figures first
+  std::vector<std::string> warnings;  // files left out, because a link leads out of the folder; a line each
 };
 
-// Reads what is there. Throws InputError where `path` is no folder, has none of these files, or one is
-// unreadable.
+// Reads what is there; of records and pictures only what is in the folder, links followed. Throws InputError
+// where `path` is no folder, has none of these files, or one is unreadable.
 ReportFolder read_report_folder(const std::filesystem::path& path);
 
 }  // namespace hemibake

@@ -90,13 +90,34 @@ TEST(Bake, RefusesWhatMemoryDoesNotHold) {
     bake(noise_map(8), settings, {});
     FAIL() << "expected a refusal";
   } catch (const SettingError& error) {
-    EXPECT_THAT(error.what(), testing::EndsWith("GiB of memory"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("at most the 1e-06 GiB of memory: "));
     EXPECT_THAT(
         error.in_file("map.png").with_prefix("--"),
-        testing::AllOf(testing::StartsWith("map.png: the bake needs"), testing::EndsWith("GiB of --memory")));
+        testing::AllOf(testing::StartsWith("map.png: the bake needs"), testing::HasSubstr("GiB of --memory: ")));
   }
   settings.limit_memory = false;
   EXPECT_NO_THROW(bake(noise_map(8), settings, {}));
+}
+
+// What a header is refused for, the plan would refuse too.
+TEST(Bake, NeedsAtLeastWhatItsHeaderTells) {
+  using Outputs = std::vector<BakeOutput>;
+  for (const Edge edge : {Edge::kWrap, Edge::kOpen})
+    for (const TracerKind tracer : {TracerKind::kSlice, TracerKind::kEmbree, TracerKind::kMarch})
+      for (const Outputs& outputs : {Outputs{BakeOutput::kAo}, BakeSettings().outputs}) {
+        LoadedMap map;
+        map.settings.edge = edge;
+        map.surface = synthetic_surface(SyntheticKind::kNoise, 19, 7, {}, {}, edge);
+        BakeSettings settings;
+        settings.tracer = tracer;
+        settings.outputs = outputs;
+        if (tracer == TracerKind::kMarch && edge != Edge::kWrap) continue;
+        resolve_defaults(map.settings, settings, [](const std::string&) { return false; });
+        const double least = least_bake_bytes(19, 7, map.settings, settings);
+        const double planned = static_cast<double>(prepare_bake(map, settings).plan.memory_bytes());
+        EXPECT_GT(least, 0);
+        EXPECT_LE(least, planned - static_cast<double>(BakePlan::kProgramBytes));
+      }
 }
 
 }  // namespace

@@ -85,10 +85,26 @@ TEST_F(BadOptions, CombinationsOfABake) {
 TEST_F(BadOptions, MemoryIsRefusedBeforeTheWork) {
   // A million rays per texel would take minutes.
   const std::string lots = " --memory 0.001 --rays 1048576";
-  const auto line =
-      AllOf(StartsWith("map.png: has 8 x 8 texels, which need "), HasSubstr("of the memory allowed"));
+  const auto line = AllOf(StartsWith("map.png: has 8 x 8 texels, which need 0."),
+                          HasSubstr("GiB, expected at most the 0.001 GiB of --memory: "));
   expect_refusal("bake map.png -o bake.exr" + lots, line);
   expect_refusal("run map.png -o results" + lots, line);
+}
+
+// The first value is infinite: whoever reads it says so.
+TEST_F(BadOptions, MemoryIsRefusedByTheHeader) {
+  write_bytes(folder_ / "large.raw", std::string("\0\0\x80\x7f", 4));
+  std::filesystem::resize_file(folder_ / "large.raw", 4 * 3000 * 3000);
+  const std::string large = "large.raw --raw 3000x3000:f32le --memory 0.5";
+  const auto line = AllOf(StartsWith("large.raw: has 3000 x 3000 texels, which need "),
+                          HasSubstr("GiB, expected at most the 0.5 GiB of --memory: "));
+  expect_refusal("bake " + large + " -o bake.exr --outputs ao", line);
+  expect_refusal("bake " + large + " -o bake.exr --outputs ao --tracer embree --edge open", line);
+  expect_refusal("run " + large + " -o results", line);
+  expect_refusal("textures " + large + " -o textures --maps ao", line);
+  // These need no more than reading does.
+  expect_refusal("bake " + large + " --dry-run", HasSubstr("inf"));
+  expect_refusal("textures " + large + " -o textures --maps svf", HasSubstr("inf"));
 }
 
 TEST_F(BadOptions, OfTheOtherCommands) {

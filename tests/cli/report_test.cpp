@@ -138,12 +138,73 @@ TEST_F(Report, ShowsPicturesOfTheFolderOnly) {
   std::ofstream(folder_ / "out/pictures/large.png") << std::string(3000001, 'x');
   std::ofstream(folder_ / "out/pictures/render.json")
       << R"({"pictures": [{"name": "wall", "files": ["wall.exr", "wall.png"]}, {"files": ["../secret.png"]},
-             {"files": ["large.png"]}, {"files": ["gone.png"]}, 7]})";
+             {"files": ["large.png"]}, {"files": ["gone.png"]}]})";
   run_well("report out");
   EXPECT_THAT(
       page("out"),
       HasSubstr("\"pictures\":[{\"name\":\"large\",\"here\":false},{\"name\":\"wall\",\"here\":true}]"));
   EXPECT_THAT(page("out"), HasSubstr("data-index=\"1\">UE5H</script>"));
+}
+
+// A link within the folder is followed; one that leads out is left out and named.
+TEST_F(Report, LeavesOutWhatLinksLeadTo) {
+  bake("out");
+  write_bytes(folder_ / "secret.png", "SECRET");
+  write_bytes(folder_ / "secret.json", R"({"password": "SECRET"})");
+  write_bytes(folder_ / "out/wall.png", "PNG");
+  std::filesystem::create_symlink("wall.png", folder_ / "out/inside.png");
+  std::filesystem::create_symlink("../secret.png", folder_ / "out/outside.png");
+  std::filesystem::create_symlink(folder_ / "secret.json", folder_ / "out/run.json");
+  std::filesystem::create_directory(folder_ / "elsewhere");
+  write_bytes(folder_ / "elsewhere/render.json", R"({"pictures": [{"files": ["other.png"]}]})");
+  write_bytes(folder_ / "elsewhere/other.png", "SECRET");
+  std::filesystem::create_directory_symlink("../elsewhere", folder_ / "out/pictures");
+  write_bytes(folder_ / "out/render.json",
+              R"({"pictures": [{"files": ["inside.png"]}, {"files": ["outside.png"]}]})");
+  const CommandResult result = run_well("report out");
+  for (const char* name : {"out/outside.png", "out/run.json", "out/pictures/render.json"})
+    EXPECT_THAT(result.standard_error,
+                HasSubstr(std::string(name) + ": is left out: it is a link that leads out of the folder\n"));
+  EXPECT_THAT(page("out"), HasSubstr("\"pictures\":[{\"name\":\"inside\",\"here\":true}]"));
+  EXPECT_THAT(page("out"), Not(HasSubstr("SECRET")));
+  EXPECT_THAT(page("out"), Not(HasSubstr("U0VDUkVU")));  // SECRET in base 64
+}
+
+TEST_F(Report, RefusesRecordsOfOtherTypes) {
+  bake("out");
+  std::filesystem::rename(folder_ / "out/check.json", folder_ / "right.json");
+  const json right = json::parse(read_bytes(folder_ / "right.json"));
+  const json run = json::parse(R"({"method": "slice", "settings": {"rays": 4}, "representative": true,
+      "cpu_seconds": 1, "memory_bytes": 2, "error": {"ao": {"rmse": 1, "bias": 1}}, "models": {}})");
+  const json trade = {
+      {"effort", "quick"},
+      {"runs", {run}},
+      {"series", {{{"name", "s"}, {"plane", "ao"}, {"slope", nullptr}, {"points", {{1, 2}}}}}},
+      {"fronts", {{"ao", {{{"cpu_seconds", 1}, {"rmse", 2}}}}}}};
+  const auto expect_each = [&](const std::string& name, json whole, const std::vector<std::string>& places) {
+    write_bytes(folder_ / "out" / name, whole.dump());
+    run_well("report out");
+    std::filesystem::remove(folder_ / "out/report.html");
+    for (const std::string& place : places)
+      for (const json& wrong : {json("text"), json(json::array({json::object()}))}) {
+        json& value = whole.at(json::json_pointer("/" + place));
+        if (wrong.type() == value.type() || (place.ends_with("rays") && wrong.is_string())) continue;
+        const json before = std::exchange(value, wrong);
+        write_bytes(folder_ / "out" / name, whole.dump());
+        value = before;
+        expect_refusal("report out", AllOf(HasSubstr("out/" + name + ": "), HasSubstr(", expected ")));
+      }
+    std::filesystem::remove(folder_ / "out" / name);
+  };
+  expect_each("check.json", right, {"checks/0", "checks/0/quantity", "checks/0/value", "checks/0/passed"});
+  expect_each("run.json", {{"seconds", 1.5}, {"cpu_seconds", 2}}, {"seconds", "cpu_seconds"});
+  expect_each("trade.json", trade,
+              {"effort", "runs/0", "runs/0/method", "runs/0/settings", "runs/0/settings/rays",
+               "runs/0/cpu_seconds", "runs/0/memory_bytes", "runs/0/error", "runs/0/error/ao",
+               "runs/0/error/ao/rmse", "runs/0/models", "series", "series/0/slope", "series/0/points",
+               "series/0/points/0", "series/0/points/0/1", "fronts", "fronts/ao", "fronts/ao/0/rmse"});
+  expect_each("render.json", {{"pictures", {{{"files", {"a.png"}}}}}},
+              {"pictures", "pictures/0", "pictures/0/files", "pictures/0/files/0"});
 }
 
 TEST_F(Report, SmallerImage) {

@@ -254,6 +254,27 @@ TEST(BakeFile, AttributesThatAreNoneAreNamed) {
               HasSubstr(at + ": nests deeper than 64"));
 }
 
+// Sizes of attributes in the header that the file does not have.
+TEST(BakeFile, AttributesOfWrongSizesAreRefused) {
+  const TemporaryFolder folder;
+  write_bake(folder / "bake.exr", random_bake(8, 8, 1), sample_provenance());
+  const std::string whole = read_bytes(folder / "bake.exr");
+  using namespace std::string_literals;
+  for (const std::string& name :
+       {"channels\0chlist\0"s, "compression\0compression\0"s, "dataWindow\0box2i\0"s,
+        "hemibake:provenance\0string\0"s, "lineOrder\0lineOrder\0"s})
+    for (const int32_t size :
+         {-1, 1 << 20, std::numeric_limits<int32_t>::max(), std::numeric_limits<int32_t>::min()}) {
+      std::string bytes = whole;
+      const size_t at = bytes.find(name);
+      ASSERT_NE(at, std::string::npos) << name;
+      std::memcpy(&bytes[at + name.size()], &size, sizeof(size));
+      write_bytes(folder / "odd.exr", bytes);
+      EXPECT_THAT(error_of<InputError>([&] { read_bake(folder / "odd.exr"); }), HasSubstr("odd.exr: is "))
+          << name << size;
+    }
+}
+
 TEST(BakeFile, CutShortAnywhereIsRefused) {
   const TemporaryFolder folder;
   write_bake(folder / "bake.exr", random_bake(64, 64, 3), sample_provenance());

@@ -1,5 +1,6 @@
 // Terrain as GDAL reads and writes it: values, units, places, holes, and what is refused.
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <bit>
 #include <limits>
@@ -225,6 +226,16 @@ TEST_F(Geo, SourcesThatAreNoFilesHereAreRefused) {
     write_vrt("url.vrt", "", "", source);
     EXPECT_THAT(refusal("url.vrt"), HasSubstr("names a source that is no file here")) << source;
   }
+  ASSERT_EQ(mkfifo((folder_ / "pipe.tif").c_str(), 0600), 0);
+  for (const std::string& source : {std::string("pipe.tif"), (folder_ / "pipe.tif").string(),
+                                    std::string("/dev/zero"), std::string("/vsigzip//dev/zero")}) {
+    write_vrt("pipe.vrt", "", "", source);
+    EXPECT_THAT(refusal("pipe.vrt"), HasSubstr("names a source that is no regular file")) << source;
+    write_vrt("outer.vrt", "", "", "pipe.vrt");
+    EXPECT_THAT(refusal("outer.vrt"), HasSubstr("names a source that is no regular file")) << source;
+  }
+  write_vrt("self.vrt", "", "", "self.vrt");
+  EXPECT_THAT(refusal("self.vrt"), HasSubstr("names itself"));
 }
 
 TEST_F(Geo, PlainImagesAreNotTerrain) {

@@ -106,6 +106,11 @@ TEST_F(HeightFiles, BrokenNpyIsRefused) {
   expect(npy("'<f4'", "False", "(0, 2)", ""), "is an array of 0 x 2 numbers");
   expect(npy("'<f4'", "False", "(99999999999, 99999999999)", two), "expected 1 to");
   expect(npy("'<f4'", "False", "(1, 3)", two), "has 8 bytes of numbers, expected 12 of 3 x 1 32-bit floats");
+  for (const char* shape : {"()", "(1, 2", "(-1, 2)", "(1.5, 2)", "('a', 2)", "[1, 2]", "(1, 2, 3, 4)",
+                            "(99999999999999999999, 1)", ""})
+    expect(npy("'<f4'", "False", shape, two), "expected rows and columns");
+  expect(npy("'<f4'", "False", "(16384, 16384)", two), "has 8 bytes of numbers");
+  expect(npy("'<f4'", "False", "(1, 2)", two + "x"), "has 9 bytes of numbers, expected 8");
   expect(npy("'<c8'", "False", "(1, 1)", two), "holds numbers of type '<c8'");
   expect(npy("'|b1'", "False", "(1, 1)", "x"), "holds numbers of type '|b1'");
   expect(npy("[('a', '<f4')]", "False", "(1, 2)", two), "holds numbers of type ");

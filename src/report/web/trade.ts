@@ -14,7 +14,7 @@ interface TradeError {
 interface Run {
   id: string;
   method: string;
-  settings: Record<string, string | number>;
+  settings: Record<string, string | number> | null; // null: of older versions
   representative: boolean;
   cpu_seconds: number;
   memory_bytes: number;
@@ -119,7 +119,7 @@ function convergenceOption(all: Series[], plane: string): Option {
 }
 
 function settings(run: Run): string {
-  return Object.entries(run.settings).map(([name, value]) => `${name} ${value}`).join(', ');
+  return Object.entries(run.settings ?? {}).map(([name, value]) => `${name} ${value}`).join(', ');
 }
 
 function runs(trade: Trade, planes: string[]): HTMLElement {

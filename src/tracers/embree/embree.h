@@ -29,6 +29,6 @@ namespace hemibake {
 std::unique_ptr<Tracer> make_embree_tracer(const Surface& surface, const RayOptions& options);
 
 // Estimates the bytes that the scene of this surface takes.
-size_t embree_scene_bytes(const Surface& surface);
+size_t embree_scene_bytes(uint32_t facets);
 
 }  // namespace hemibake

@@ -384,9 +384,9 @@ constexpr size_t kBytesPerThread = size_t{2} << 20, kBytesPerThreadWithLinks = s
 
 }  // namespace
 
-size_t slice_tracer_bytes(const Surface& surface, const SliceOptions& options, bool with_links) {
+size_t slice_tracer_bytes(uint32_t texels, const SliceOptions& options, bool with_links) {
   const SliceFamilies families = make_slice_families(options.azimuths, options.patch_kind, options.seed);
-  size_t bytes = kPyramidBytesPerTexel * surface.texel_count() + cache_bytes(families.texels);
+  size_t bytes = kPyramidBytesPerTexel * texels + cache_bytes(families.texels);
   if (with_links)
     for (const SlicePaths& paths : families.nodes) bytes += cache_bytes(paths);
   return bytes +

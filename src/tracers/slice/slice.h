@@ -48,6 +48,6 @@ struct SliceOptions {
 std::unique_ptr<Tracer> make_slice_tracer(const Surface& surface, const SliceOptions& options);
 
 // Estimates the bytes of a slice tracer: its heights, its paths, and the views of its threads.
-size_t slice_tracer_bytes(const Surface& surface, const SliceOptions& options, bool with_links);
+size_t slice_tracer_bytes(uint32_t texels, const SliceOptions& options, bool with_links);
 
 }  // namespace hemibake
