@@ -115,25 +115,21 @@ Noise trace_again(const Tracer& again, const LightTransport& seen, const Bounces
 // The light of a set of nodes as every other node of each facet tells it: the others get the mean of the two
 // beside them.
 void richardson_by_every_other_node(const PatchSet& patches, std::vector<double>& light) {
-  const auto runs = static_cast<uint32_t>(patches.first.size() - 1);
-  parallel_for(runs, 256, [&](size_t begin, size_t end) {
-    for (size_t r = begin; r < end; ++r) {
-      const PatchRun run = patch_run(patches, static_cast<uint32_t>(r));
-      for (uint32_t facet = 0; facet < 2 * run.cells; ++facet) {
-        const uint32_t half = facet % 2, cell = facet / 2;
-        const int k = run.subdivision(half, cell);
-        for (int b = 0; b <= k; ++b)
-          for (int a = 0; a + b <= k; ++a) {
-            const int odd_a = a % 2, odd_b = b % 2;
-            if (odd_a == 0 && odd_b == 0) continue;
-            // Along u, along v, or along the long side.
-            const uint32_t node = node_at(k, a, b),
-                           one = node_at(k, a - odd_a, b + (odd_a == 1 ? odd_b : -1)),
-                           other = node_at(k, a + odd_a, b - (odd_a == 1 ? odd_b : -1));
-            light[run.patch(half, node, cell)] =
-                0.5 * (light[run.patch(half, one, cell)] + light[run.patch(half, other, cell)]);
-          }
-      }
+  parallel_for(size_t{2} * patches.columns * patches.cell_rows, 4096, [&](size_t begin, size_t end) {
+    for (size_t f = begin; f < end; ++f) {
+      const auto facet = static_cast<uint32_t>(f);
+      const int k = subdivision(patches, facet);
+      const auto light_at = [&](int a, int b) -> double& {
+        return light[patch_at(patches, facet, node_at(k, a, b))];
+      };
+      for (int b = 0; b <= k; ++b)
+        for (int a = 0; a + b <= k; ++a) {
+          const int odd_a = a % 2, odd_b = b % 2;
+          if (odd_a == 0 && odd_b == 0) continue;
+          // Along u, along v, or along the long side.
+          const int step_b = odd_a == 1 ? odd_b : -1;
+          light_at(a, b) = 0.5 * (light_at(a - odd_a, b + step_b) + light_at(a + odd_a, b - step_b));
+        }
     }
   });
 }
