@@ -44,7 +44,13 @@ constexpr std::array<std::array<uint8_t, 5>, 5> make_nodes_at() {
 }
 constexpr std::array<std::array<uint8_t, 5>, 5> kNodesAt = make_nodes_at();  // [row][column], in quarters
 
-uint32_t bits_in(uint32_t mask) { return static_cast<uint32_t>(std::popcount(mask)); }
+// Returns the number of bits of a mask of 16; std::popcount is a function call on plain x86-64.
+uint32_t bits_in(uint32_t mask) {
+  mask -= mask >> 1 & 0x5555;
+  mask = (mask & 0x3333) + (mask >> 2 & 0x3333);
+  mask = (mask + (mask >> 4)) & 0x0f0f;
+  return (mask + (mask >> 8)) & 0x1f;
+}
 
 // Returns the facet whose cut decides whether a slot's node is there; of finer nodes only.
 constexpr FineFacet fine_facet(const NodeSlot& slot) {
@@ -94,7 +100,7 @@ PatchRun make_run(const PatchSet& patch_set, uint32_t x, uint32_t y) {
   return run;
 }
 
-// Returns a run by one of its texels. Without division: every form factor asks for one.
+// Returns a run by one of its texels.
 PatchRun run_at(const PatchSet& patch_set, uint32_t x, uint32_t y) {
   PatchRun run = make_run(patch_set, x - x % kRunTexels, y);
   const uint32_t index = run_index(patch_set, x, y);
@@ -120,6 +126,40 @@ std::array<NodeShare, 3> node_shares(int k, glm::dvec2 uv) {
     return {{{a + 1, b, share_u}, {a, b + 1, share_v}, {a, b, 1 - share_u - share_v}}};
   }
   return {{{a, b + 1, 1 - fu}, {a + 1, b, 1 - fv}, {a + 1, b + 1, fu + fv - 1}}};
+}
+
+// A facet by its cell.
+struct FacetPlace {
+  uint32_t column, row, half;
+};
+
+// Without division: every form factor asks for one.
+FacetPlace place_of(const PatchSet& patch_set, uint32_t facet) {
+  const uint32_t cell = facet / 2, row = static_cast<uint32_t>((cell + 0.5) * patch_set.inverse_columns);
+  return {cell - row * patch_set.columns, row, facet % 2};
+}
+
+int subdivision_at(const PatchSet& patch_set, const FacetPlace& place) {
+  const uint32_t fine =
+      patch_set
+          .fine[run_index(patch_set, place.column, place.row)][place.half == 0 ? kFirstHalf : kSecondHalf];
+  return (fine >> place.column % kRunTexels & 1) != 0 ? kFineSubdivision : kCoarseSubdivision;
+}
+
+uint32_t patch_at_place(const PatchSet& patch_set, const FacetPlace& place, uint32_t node) {
+  const uint32_t slot = kNodeSites.slot_of[place.half][node];
+  uint32_t x = place.column + kNodeSites.slots[slot].left, y = place.row + kNodeSites.slots[slot].up;
+  if (x == patch_set.width) x = 0;
+  if (y == patch_set.height) y = 0;
+  const uint32_t lane = x % kRunTexels, first_x = x - lane;
+  const bool wraps = patch_set.columns == patch_set.width;
+  const bool inside =
+      first_x > 0 && first_x + kRunTexels <= patch_set.columns && y > 0 && y < patch_set.cell_rows;
+  if (slot < kCoarseSlots && (wraps || inside))
+    return patch_set.first[run_index(patch_set, x, y)] +
+           slot * std::min(kRunTexels, patch_set.width - first_x) + lane;
+  const PatchRun run = run_at(patch_set, x, y);
+  return run.first_of(slot) + bits_in(run.texels_with(slot) & ((1u << lane) - 1));
 }
 
 uint32_t patches_of_run(const PatchRun& run) {
@@ -161,6 +201,7 @@ PatchSet make_patches(const Surface& surface, PatchKind kind) {
   patch_set.width = static_cast<uint32_t>(surface.width());
   patch_set.height = static_cast<uint32_t>(surface.height());
   patch_set.columns = facet_columns(surface);
+  patch_set.inverse_columns = 1.0 / std::max(1u, patch_set.columns);
   patch_set.runs_in_row = (patch_set.width + kRunTexels - 1) / kRunTexels;
   patch_set.cell_rows = patch_set.columns == 0 ? 0 : facet_count(surface) / 2 / patch_set.columns;
   patch_set.fine = find_fine_facets(surface, patch_set);
@@ -224,20 +265,11 @@ uint32_t facet_of_slot(const PatchSet& patch_set, uint32_t slot, uint32_t x, uin
 }
 
 int subdivision(const PatchSet& patch_set, uint32_t facet) {
-  const uint32_t cell = facet / 2, row = cell / patch_set.columns, column = cell - row * patch_set.columns;
-  const uint16_t fine =
-      patch_set.fine[run_index(patch_set, column, row)][facet % 2 == 0 ? kFirstHalf : kSecondHalf];
-  return (fine >> column % kRunTexels & 1) != 0 ? kFineSubdivision : kCoarseSubdivision;
+  return subdivision_at(patch_set, place_of(patch_set, facet));
 }
 
 uint32_t patch_at(const PatchSet& patch_set, uint32_t facet, uint32_t node) {
-  const uint32_t cell = facet / 2, row = cell / patch_set.columns, column = cell - row * patch_set.columns;
-  const uint32_t slot = kNodeSites.slot_of[facet % 2][node];
-  uint32_t x = column + kNodeSites.slots[slot].left, y = row + kNodeSites.slots[slot].up;
-  if (x == patch_set.width) x = 0;
-  if (y == patch_set.height) y = 0;
-  const PatchRun run = run_at(patch_set, x, y);
-  return run.first_of(slot) + bits_in(run.texels_with(slot) & ((1u << x % kRunTexels) - 1));
+  return patch_at_place(patch_set, place_of(patch_set, facet), node);
 }
 
 FacetNode facet_node(const PatchSet& patch_set, uint32_t patch) {
@@ -252,19 +284,21 @@ FacetNode facet_node(const PatchSet& patch_set, uint32_t patch) {
 }
 
 std::array<PatchShare, 3> patch_shares(const PatchSet& patch_set, uint32_t facet, glm::dvec2 uv) {
-  const int k = subdivision(patch_set, facet);
+  const FacetPlace place = place_of(patch_set, facet);
+  const int k = subdivision_at(patch_set, place);
   const std::array<NodeShare, 3> nodes = node_shares(k, uv);
   std::array<PatchShare, 3> shares;
   for (size_t i = 0; i < nodes.size(); ++i)
-    shares[i] = {patch_at(patch_set, facet, node_at(k, nodes[i].a, nodes[i].b)), nodes[i].share};
+    shares[i] = {patch_at_place(patch_set, place, node_at(k, nodes[i].a, nodes[i].b)), nodes[i].share};
   return shares;
 }
 
 uint32_t sample_patch(const PatchSet& patch_set, uint32_t facet, glm::dvec2 uv, double u) {
-  const int k = subdivision(patch_set, facet);
+  const FacetPlace place = place_of(patch_set, facet);
+  const int k = subdivision_at(patch_set, place);
   const std::array<NodeShare, 3> nodes = node_shares(k, uv);
   const size_t drawn = u < nodes[0].share ? 0 : u < nodes[0].share + nodes[1].share ? 1 : 2;
-  return patch_at(patch_set, facet, node_at(k, nodes[drawn].a, nodes[drawn].b));
+  return patch_at_place(patch_set, place, node_at(k, nodes[drawn].a, nodes[drawn].b));
 }
 
 glm::dvec2 node_start_uv(uint32_t node, glm::dvec2 point) {

@@ -40,6 +40,7 @@ struct PatchSet {
   uint32_t count = 0;
   // kFacets only:
   uint32_t columns = 0, cell_rows = 0;        // cells
+  double inverse_columns = 0;                 // 1 / columns
   uint32_t width = 0, height = 0;             // texels
   uint32_t runs_in_row = 0;                   // ⌈width / kRunTexels⌉
   std::vector<uint32_t> first;                // first patch of every run, and `count` at the end
