@@ -134,6 +134,8 @@ class Writer {
     OIIO::attribute("exr_threads", thread_count());
     if (!output_ || !output_->set_ioproxy(&proxy_))
       throw std::logic_error("OpenImageIO cannot write " + format);
+    // libpng tells the terminal of a file that ends before its first row.
+    throw_if_cancelled();
     if (!output_->open(file.path().string(), spec_)) fail();
   }
 
@@ -145,7 +147,6 @@ class Writer {
     const auto width = static_cast<size_t>(spec_.width);
     std::vector<Sample> block(static_cast<size_t>(rows) * width * planes.size());
     for (int begin = 0; begin < spec_.height; begin += rows) {
-      throw_if_cancelled();
       const int end = std::min(spec_.height, begin + rows);
       const size_t first_texel = static_cast<size_t>(begin) * width;
       const size_t texels = static_cast<size_t>(end - begin) * width;
@@ -154,6 +155,7 @@ class Writer {
           block[i * planes.size() + k] =
               convert(planes[k].first[(first_texel + i) * planes[k].stride], k, first_texel + i);
       if (!output_->write_scanlines(begin, end, 0, OIIO::BaseTypeFromC<Sample>::value, block.data())) fail();
+      throw_if_cancelled();
     }
     const bool closed = output_->close();
     if (!closed || proxy_.error_number() != 0) fail();

@@ -44,7 +44,10 @@ TEST_F(Textures, HoldTheirPlanesToHalfAStep) {
     double tolerance;
   } formats[] = {
       {"png16", "png", 0.5 * kStep16}, {"png8", "png", 0.5 * kStep8}, {"exr", "exr", 0}, {"tif", "tif", 0}};
-  for (const auto& [format, ending, tolerance] : formats) {
+  for (const auto& each : formats) {
+    // Names of their own: Clang 14 does not capture structured bindings.
+    const char *format = each.format, *ending = each.ending;
+    const double tolerance = each.tolerance;
     for (const char* maps :
          {"visibility,ao", "bounce"})  // bytes of both together are chosen (bounce_map_test.cpp)
       run_well(fmt::format("textures b.exr -o {0} --maps {1} --format {0}", format, maps));

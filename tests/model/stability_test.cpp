@@ -144,7 +144,8 @@ TEST(Stability, EscapeModelsKeepFloatPrecision) {
       else
         models.push_back({name_of(file) + " V", std::get<VisibilityModel>(any)});
     }
-  for (const auto& [name, model] : models) {
+  for (const auto& [name, fitted] : models) {
+    const auto& model = fitted;  // Clang 14 does not capture structured bindings
     const Errors of_visibility =
         compare([&](auto visibility, auto albedo) { return model.total(visibility, albedo); });
     print_row(name + " total", of_visibility);

@@ -23,7 +23,8 @@ using V = hn::Vec<F>;
 constexpr F kF;
 constexpr size_t kWidth = hn::MaxLanes(F());
 
-#define HEMIBAKE_ROUNDS_TWICE (HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_SCALAR)
+#define HEMIBAKE_ROUNDS_TWICE \
+  (HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128)
 #if HEMIBAKE_ROUNDS_TWICE
 
 // Returns a b + c, rounded once as by an instruction. The sum in double is rounded to odd (Boldo and
