@@ -117,6 +117,7 @@ struct HitSlopes {
 
   // Puts the rows of a part from `first` on, ascending like those before, in their places among these.
   HWY_INLINE void merge(size_t part, int first) {
+    if (first == 0) return;
     for (int begin = first; begin < rows[part]; ++begin)
       for (int row = begin; row > 0; --row) {
         float *low = slope[row - 1] + part * kWidth, *high = slope[row] + part * kWidth;
