@@ -23,6 +23,11 @@ constexpr size_t kBytesPerCachedSegment = 560;  // about 22 crossings and their 
 // one.
 constexpr int kCornerFactor = 2;
 
+// Texels: a hit of a node on a facet that touches it counts as so far away. With less, nodes in deep folds
+// see little but each other, and light stays there longer than it does along a facet that brightens away from
+// the fold; with more it leaves too early (README.md).
+constexpr double kLeastNodeDistance = 0.01;
+
 // Returns the azimuths of a node: at least ten, with fewer, nodes in deep folds see only each other; twice an
 // odd number, which integrates the cosine weight of a tilted facet well (odd harmonics above the first
 // vanish).
@@ -74,6 +79,7 @@ SlicePaths make_node_paths(int azimuths, uint64_t seed, uint32_t site) {
   SlicePaths family =
       make_paths((corner ? kCornerFactor : 1) * azimuths_of_node(azimuths),
                  corner ? kCornerPaths : kNodePaths, rotation_offset(seed, 1 + site), make_path);
+  family.least_distance = kLeastNodeDistance;
   family.hit_azimuth_stride = corner ? kCornerFactor : 1;
   reserve_cache(corner ? kCachedCornerSegments : kCachedNodeSegments, family);
   return family;

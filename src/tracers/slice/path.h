@@ -76,6 +76,7 @@ struct CachedSegments {
 struct SlicePaths {
   int azimuths = 0;
   int hit_azimuth_stride = 1;    // hits are sampled along every n-th azimuth only
+  double least_distance = 0;     // texels: nearer hits count as so far away
   int rotations = 0;             // rotations of the azimuths
   std::vector<SlicePath> paths;  // [rotation · azimuths + azimuth]
   std::shared_ptr<CachedSegments> cache;

@@ -113,6 +113,7 @@ HWY_INLINE void PathTraversal::find_segment_hits(const SlicePacket& packet, int 
   const glm::vec2 begin(segment_begin(path, segment)), direction(path.direction);
   const glm::ivec2 window = window_in_map(packet, segments_.corner(segment, 0));
   const float* heights = pyramid_.heights.at(window.x, window.y);
+  const V least = broadcast(segment == 0 ? options_.least_distance : 0);
   for_each_crossing(
       packet, segment, lanes,
       [&](size_t p, V slope, const glm::ivec2& corner, const Crossing& crossing, const FacetBefore& facet)
@@ -129,7 +130,8 @@ HWY_INLINE void PathTraversal::find_segment_hits(const SlicePacket& packet, int 
               const V next = lanes.slope.part[p];
               const V above = hn::Max(zero, mul_sub(next, near_distance, near_height));
               const V below = hn::Max(hn::Set(kF, 1e-30f), neg_mul_add(next, far_distance, far_height));
-              const V along = mul_add(hn::Div(above, hn::Add(above, below)), hn::Sub(left, entered), entered);
+              const V exact = mul_add(hn::Div(above, hn::Add(above, below)), hn::Sub(left, entered), entered);
+              const V along = hn::Max(exact, hn::Min(left, least));
               const V distance = hn::Mul(hn::Add(near, along), hn::Sqrt(mul_add(next, next, one)));
               alignas(64) float slopes[kWidth], alongs[kWidth], distances[kWidth];
               hn::Store(next, kF, slopes);

@@ -93,6 +93,7 @@ struct TraversalOptions {
   Query query = Query::kHorizon;
   int hit_azimuth_stride = 1;  // hits are sampled along every n-th azimuth only, of each receiver others
   double max_distance = std::numeric_limits<double>::infinity();  // horizontal, texels: paths may end there
+  double least_distance = 0;  // horizontal, texels: nearer hits count as so far away
 };
 
 // Packets and their receivers.

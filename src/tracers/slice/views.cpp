@@ -12,7 +12,8 @@ namespace {
 // Hits wanted of a receiver that would have none.
 constexpr double kFewestHits = 8;
 
-// Returns the lanes that have no hits and yet are blocked, as receivers whose slices are sampled more densely.
+// Returns the lanes that have no hits and yet are blocked, as receivers whose slices are sampled more
+// densely.
 SliceReceivers missed_lanes(const SliceReceivers& receivers, const PacketView& view) {
   SliceReceivers missed = receivers;
   missed.lanes = 0;
@@ -44,7 +45,9 @@ void resample_missed_hits(const SliceScene& scene, const SlicePaths& paths, Slic
   packet.first_receiver = 0;
   packet.receivers = static_cast<uint32_t>(missed.size());
   std::vector<PacketView> again(missed.size());
-  traverse_packets(scene.pyramid, paths, {Query::kSampledHits, 1}, {{&packet, 1}, missed}, again);
+  traverse_packets(scene.pyramid, paths,
+                   {.query = Query::kSampledHits, .least_distance = paths.least_distance},
+                   {{&packet, 1}, missed}, again);
   for (size_t i = 0; i < missed.size(); ++i)
     for (size_t lane = 0; lane < kSliceLanes; ++lane)
       if ((missed[i].lanes >> lane & 1) != 0) views[whose[i]].hits[lane] = std::move(again[i].hits[lane]);
@@ -93,7 +96,7 @@ std::span<const PacketView> trace_views(const SliceScene& scene, const SlicePath
   const bool sampled = query == Query::kSampledHits && !limited;
   traverse_packets(scene.pyramid, paths,
                    {limited ? Query::kAllIntervals : query, sampled ? paths.hit_azimuth_stride : 1,
-                    scene.max_distance_texels()},
+                    scene.max_distance_texels(), paths.least_distance},
                    packets, views);
   for (const SlicePacket& packet : packets.packets) {
     const auto receivers = packets.receivers.subspan(packet.first_receiver, packet.receivers);
