@@ -26,7 +26,7 @@ constexpr int kCornerFactor = 2;
 // Texels: a hit of a node on a facet that touches it counts as so far away. With less, nodes in deep folds
 // see little but each other, and light stays there longer than it does along a facet that brightens away from
 // the fold; with more it leaves too early (README.md).
-constexpr double kLeastNodeDistance = 0.01;
+constexpr double kLeastNodeDistance = 0.0075;
 
 // Returns the azimuths of a node: at least ten, with fewer, nodes in deep folds see only each other; twice an
 // odd number, which integrates the cosine weight of a tilted facet well (odd harmonics above the first
