@@ -73,7 +73,7 @@ void choose_rays_and_bounces(PreparedBake& prepared) {
 LightTransport trace(const PreparedBake& prepared, BakeResult& result) {
   const double cpu_start = process_cpu_seconds();
   LightTransport transport = trace_surface(
-      *prepared.tracer, prepared.settings.needs_form_factors(),
+      *prepared.tracer, prepared.settings.kept_links(),
       prepared.plan.spills ? std::make_shared<SpillFile>(prepared.settings.spill_folder) : nullptr);
   result.counts = transport.counts;
   result.links = transport.final_gather.count() + transport.patch_form_factors.count();

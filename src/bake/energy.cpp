@@ -121,11 +121,15 @@ LinkEnergy measure_link_energy(const Surface& surface, const PatchSet& patches, 
       static_cast<double>(seen.counts.rays) / (seen.final_gather.rows + seen.patch_form_factors.rows);
   const double opening = 0.5 * facet_count(surface);  // texels²
   double light = 0, variance = 0;
-  for (uint32_t patch = 0; patch < seen.patch_form_factors.rows; ++patch) {
-    const double area = patch_area_texels(surface, patches, patch);
-    const double seen_sky = static_cast<double>(seen.patch_direct_over_pi[patch]);
-    light += area * seen_sky;
-    variance += area * area * seen_sky * (1 - seen_sky) / rays;
+  for (uint32_t facet = 0; facet < facet_count(surface); ++facet) {
+    const int k = subdivision(patches, facet);
+    const double facet_area = 0.5 * facet_area_ratio(surface, facet);
+    for (uint32_t node = 0; node < node_count(k); ++node) {
+      const double area = facet_area * node_area_share(k, node);
+      const double seen_sky = static_cast<double>(seen.patch_direct_over_pi[patch_at(patches, facet, node)]);
+      light += area * seen_sky;
+      variance += area * area * seen_sky * (1 - seen_sky) / rays;
+    }
   }
   energy.light_over_opening = light / opening;
   energy.light_over_opening_stderr = std::sqrt(variance) / opening;

@@ -14,7 +14,8 @@
 namespace hemibake {
 namespace {
 
-constexpr uint32_t kSample = 2048;  // texels, and nodes, traced again
+// Groups of neighbouring texels, and nodes, traced again: tracers answer neighbours together.
+constexpr uint32_t kGroups = 128, kGroupRows = 16;
 constexpr uint64_t kSampleStream = 0xe440;
 constexpr size_t kHalfBounces = 8;  // at albedo ½ the rest is below 1/256 of the first
 constexpr double kLeft = 2;         // what half as many nodes err by more, over the error
@@ -50,21 +51,35 @@ bool is_open(const Tracer& tracer, uint32_t patch) {
   return facet_is_open(surface, facet_node(tracer.patch_set(), patch).facet);
 }
 
+// Calls act(index, row) for a sample of receivers. trace(first, rows, counts): as Tracer::trace_texels.
+template <class Trace, class Act>
+void for_each_sampled(uint32_t count, const Trace& trace, const Act& act) {
+  std::vector<Row> rows(kGroupRows);
+  TracerCounts counts;
+  for (const uint32_t group :
+       stratified_sample((count + kGroupRows - 1) / kGroupRows, kGroups, kSampleStream)) {
+    const uint32_t first = group * kGroupRows;
+    const std::span<Row> of_group(rows.data(), std::min(kGroupRows, count - first));
+    trace(first, of_group, counts);
+    for (uint32_t i = 0; i < of_group.size(); ++i) act(first + i, of_group[i]);
+  }
+}
+
 NodeNoise node_noise(const Tracer& again, const LightTransport& seen) {
   Moments all;
   std::array<Moments, kNodeKinds> squares, binomials;
-  Row row;
-  TracerCounts counts;
-  for (const uint32_t node : stratified_sample(again.patch_set().count, kSample, kSampleStream)) {
-    if (is_open(again, node)) continue;
-    again.trace_patch(node, false, row, counts);
+  const auto trace = [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
+    again.trace_patches(first, false, rows, counts);
+  };
+  for_each_sampled(again.patch_set().count, trace, [&](uint32_t node, const Row& row) {
+    if (is_open(again, node)) return;
     const double direct = static_cast<double>(seen.patch_direct()[node]);
     const double variance = (row.direct_over_pi - direct) * (row.direct_over_pi - direct) / 2;
     const size_t kind = kind_of(again.patch_set(), node);
     all.add(variance);
     squares[kind].add(variance);
     binomials[kind].add(binomial(direct));
-  }
+  });
   NodeNoise noise;
   noise.mean_variance = all.mean;
   for (size_t kind = 0; kind < kNodeKinds; ++kind)
@@ -75,65 +90,50 @@ NodeNoise node_noise(const Tracer& again, const LightTransport& seen) {
 // The sampled texels again, with the same light of the patches; its noise comes on top.
 Noise trace_again(const Tracer& again, const LightTransport& seen, const Bounces& bounces,
                   const NodeNoise& nodes) {
-  std::vector<uint32_t> texels =
-      stratified_sample(static_cast<uint32_t>(seen.direct_over_pi.size()), kSample, kSampleStream);
-  std::erase_if(texels, [&](uint32_t texel) { return again.surface().is_hole(texel); });
-  struct Difference {
-    double ao, direct, first, light_variance;
-  };
-  std::vector<Difference> differences(texels.size());
-  parallel_for(texels.size(), 16, [&](size_t begin, size_t end) {
-    Row row;
-    TracerCounts counts;
-    for (size_t i = begin; i < end; ++i) {
-      const uint32_t texel = texels[i];
-      again.trace_texel(texel, true, row, counts);
-      double first = 0, light_variance = 0;
-      for (const FormFactor& link : row.links) {
-        const double weight = static_cast<double>(link.weight);
-        const double direct = static_cast<double>(seen.patch_direct()[link.patch]);
-        first += weight * direct;
-        light_variance +=
-            weight * weight * binomial(direct) * nodes.per_binomial[kind_of(again.patch_set(), link.patch)];
-      }
-      differences[i] = {row.visible_fraction - static_cast<double>(seen.visible_fraction[texel]),
-                        row.direct_over_pi - static_cast<double>(seen.direct_over_pi[texel]),
-                        first - static_cast<double>(bounces.irradiance[1][texel]) / kPi, light_variance};
-    }
-  });
   Noise noise;
-  for (const Difference& d : differences) {
-    noise.ao.add(d.ao * d.ao);
-    noise.direct.add(d.direct * d.direct);
-    noise.first.add(d.first * d.first + 2 * d.light_variance);
-    noise.ao_direct.add(d.ao * d.direct / 2);
-    noise.ao_first.add(d.ao * d.first / 2);
-  }
+  const auto trace = [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
+    again.trace_texels(first, true, rows, counts);
+  };
+  for_each_sampled(again.surface().texel_count(), trace, [&](uint32_t texel, const Row& row) {
+    if (again.surface().is_hole(texel)) return;
+    double light = 0, light_variance = 0;
+    for (const FormFactor& link : row.links) {
+      const double weight = static_cast<double>(link.weight);
+      const double direct = static_cast<double>(seen.patch_direct()[link.patch]);
+      light += weight * direct;
+      light_variance +=
+          weight * weight * binomial(direct) * nodes.per_binomial[kind_of(again.patch_set(), link.patch)];
+    }
+    const double ao = row.visible_fraction - static_cast<double>(seen.visible_fraction[texel]);
+    const double direct = row.direct_over_pi - static_cast<double>(seen.direct_over_pi[texel]);
+    const double first = light - static_cast<double>(bounces.irradiance[1][texel]) / kPi;
+    noise.ao.add(ao * ao);
+    noise.direct.add(direct * direct);
+    noise.first.add(first * first + 2 * light_variance);
+    noise.ao_direct.add(ao * direct / 2);
+    noise.ao_first.add(ao * first / 2);
+  });
   return noise;
 }
 
 // The light of a set of nodes as every other node of each facet tells it: the others get the mean of the two
 // beside them.
 void richardson_by_every_other_node(const PatchSet& patches, std::vector<double>& light) {
-  const auto runs = static_cast<uint32_t>(patches.first.size() - 1);
-  parallel_for(runs, 256, [&](size_t begin, size_t end) {
-    for (size_t r = begin; r < end; ++r) {
-      const PatchRun run = patch_run(patches, static_cast<uint32_t>(r));
-      for (uint32_t facet = 0; facet < 2 * run.cells; ++facet) {
-        const uint32_t half = facet % 2, cell = facet / 2;
-        const int k = run.subdivision(half, cell);
-        for (int b = 0; b <= k; ++b)
-          for (int a = 0; a + b <= k; ++a) {
-            const int odd_a = a % 2, odd_b = b % 2;
-            if (odd_a == 0 && odd_b == 0) continue;
-            // Along u, along v, or along the long side.
-            const uint32_t node = node_at(k, a, b),
-                           one = node_at(k, a - odd_a, b + (odd_a == 1 ? odd_b : -1)),
-                           other = node_at(k, a + odd_a, b - (odd_a == 1 ? odd_b : -1));
-            light[run.patch(half, node, cell)] =
-                0.5 * (light[run.patch(half, one, cell)] + light[run.patch(half, other, cell)]);
-          }
-      }
+  parallel_for(size_t{2} * patches.columns * patches.cell_rows, 4096, [&](size_t begin, size_t end) {
+    for (size_t f = begin; f < end; ++f) {
+      const auto facet = static_cast<uint32_t>(f);
+      const int k = subdivision(patches, facet);
+      const auto light_at = [&](int a, int b) -> double& {
+        return light[patch_at(patches, facet, node_at(k, a, b))];
+      };
+      for (int b = 0; b <= k; ++b)
+        for (int a = 0; a + b <= k; ++a) {
+          const int odd_a = a % 2, odd_b = b % 2;
+          if (odd_a == 0 && odd_b == 0) continue;
+          // Along u, along v, or along the long side.
+          const int step_b = odd_a == 1 ? odd_b : -1;
+          light_at(a, b) = 0.5 * (light_at(a - odd_a, b + step_b) + light_at(a + odd_a, b - step_b));
+        }
     }
   });
 }

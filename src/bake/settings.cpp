@@ -186,7 +186,14 @@ bool BakeSettings::needs_form_factors() const {
 }
 
 bool BakeSettings::makes_bounce_plane() const {
-  return bounce_albedo && wants(BakeOutput::kIrradiance) && needs_form_factors();
+  return bounce_albedo && wants(BakeOutput::kIrradiance) && (trace_form_factors || bounces > 1 || converge);
+}
+
+KeptLinks BakeSettings::kept_links() const {
+  if (!needs_form_factors()) return KeptLinks::kNone;
+  const bool one_bounce =
+      bounces <= 1 && !converge && !target_error && !trace_form_factors && !keep_transport;
+  return one_bounce ? KeptLinks::kOfTexels : KeptLinks::kAll;
 }
 
 std::vector<Field> map_fields(MapSettings& s) {

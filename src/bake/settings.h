@@ -19,6 +19,7 @@
 #include "surface/surface.h"
 #include "tracers/march/march.h"
 #include "tracers/ray_options.h"
+#include "transport/trace_surface.h"
 
 namespace hemibake {
 
@@ -103,6 +104,8 @@ struct BakeSettings {
   bool needs_form_factors() const;
   // Returns whether the plane `bounce` is made.
   bool makes_bounce_plane() const;
+  // Returns what is traced: the links of patches for two bounces or more only.
+  KeptLinks kept_links() const;
 };
 
 // The fields refer to `settings`, which must outlive them.

@@ -165,7 +165,7 @@ TargetChoice choose_for_target(const Surface& surface, const TargetOptions& opti
   if (options.with_light) {
     const int rough_rays = static_cast<int>(kRoughFactor * options.fewest_rays);
     const auto tracer = options.make_tracer(rough_rays, mix_bits(options.seed, kPilotStream, 2));
-    const LightTransport rough = trace_surface(*tracer, true);
+    const LightTransport rough = trace_surface(*tracer, KeptLinks::kAll);
     choice.bounces = choose_bounces(rough, kTruncationShare * options.error, choice.truncation);
     for (size_t a = 0; a < kJudgedAlbedos.size(); ++a)
       patches[a] = light_at(rough, kJudgedAlbedos[a], std::nullopt).patch_light;

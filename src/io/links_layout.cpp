@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kMark = "hemibake links 1 ";
+constexpr std::string_view kMark = "hemibake links 2 ";
 constexpr std::string_view kHdf5Mark = "\x89HDF\r\n\x1a\n";
 constexpr size_t kSizeDigits = 16, kHashDigits = 64;
 constexpr size_t kFirstLineBytes = kMark.size() + kSizeDigits + 1 + kHashDigits + 1;

@@ -1,10 +1,11 @@
 // The head of LINKS.h5: where the arrays stand in the file, so that reading it needs no HDF5.
 //
 // It fills the user block, the bytes before the HDF5 that HDF5 leaves alone:
-//   hemibake links 1 BYTES SHA256\n    BYTES: of the head, 16 digits; SHA256: of the rest of it
+//   hemibake links 2 BYTES SHA256\n    BYTES: of the head, 16 digits; SHA256: of the rest of it
 //   {"bytes": of the file, "gather": MATRIX, "patches": MATRIX or null, "direct": ARRAY, "provenance": {…}}
 // and spaces. MATRIX: {"rows", "columns", "indptr": ARRAY, "indices": ARRAY, "weights": ARRAY}. ARRAY:
-// {"offset": in the file, "count": of numbers, "sha256": of its bytes}.
+// {"offset": in the file, "count": of numbers, "sha256": of its bytes}. In files of number 1 patches were
+// numbered otherwise.
 #pragma once
 
 #include <cstdint>

@@ -26,19 +26,14 @@ double longest_edge_texels(const Surface& surface, uint32_t facet) {
   return std::max({glm::distance(p[0], p[1]), glm::distance(p[1], p[2]), glm::distance(p[2], p[0])});
 }
 
-std::array<uint16_t, 2> fine_facets(const Surface& surface, uint32_t first_cell, uint32_t cells) {
-  std::array<uint16_t, 2> fine{};
+// Returns the bits of a run's texels whose cell has a finely cut facet, for either half. y: of the cells.
+std::array<uint32_t, 2> fine_halves(const Surface& surface, uint32_t first_cell, uint32_t cells) {
+  std::array<uint32_t, 2> fine{};
   for (uint32_t facet = 0; facet < 2 * cells; ++facet)
     if (longest_edge_texels(surface, 2 * first_cell + facet) > kLongestCoarseEdge)
-      fine[facet % 2] |= static_cast<uint16_t>(1u << facet / 2);
+      fine[facet % 2] |= 1u << facet / 2;
   return fine;
 }
-
-struct NodePlace {
-  int a, b;  // column and row, in quarters
-};
-constexpr NodePlace kNodePlaces[kFineNodes] = {{0, 0}, {2, 0}, {4, 0}, {0, 2}, {2, 2}, {0, 4}, {1, 0}, {3, 0},
-                                               {0, 1}, {1, 1}, {2, 1}, {3, 1}, {1, 2}, {0, 3}, {1, 3}};
 
 constexpr std::array<std::array<uint8_t, 5>, 5> make_nodes_at() {
   std::array<std::array<uint8_t, 5>, 5> nodes{};
@@ -49,35 +44,69 @@ constexpr std::array<std::array<uint8_t, 5>, 5> make_nodes_at() {
 }
 constexpr std::array<std::array<uint8_t, 5>, 5> kNodesAt = make_nodes_at();  // [row][column], in quarters
 
-uint32_t bits_in(uint32_t mask) { return static_cast<uint32_t>(std::popcount(mask)); }
-
-uint32_t patches_of_half(const PatchRun& run, uint32_t half) {
-  return kCoarseNodes * run.cells + (kFineNodes - kCoarseNodes) * bits_in(run.fine[half]);
+// Returns the number of bits of a mask of 16; std::popcount is a function call on plain x86-64.
+uint32_t bits_in(uint32_t mask) {
+  mask -= mask >> 1 & 0x5555;
+  mask = (mask & 0x3333) + (mask >> 2 & 0x3333);
+  mask = (mask + (mask >> 4)) & 0x0f0f;
+  return (mask + (mask >> 8)) & 0x1f;
 }
 
-// Returns the offset of a node's first patch from that of its half.
-uint32_t begin_of_node(const PatchRun& run, uint32_t half, uint32_t node) {
-  if (node < kCoarseNodes) return node * run.cells;
-  return kCoarseNodes * run.cells + (node - kCoarseNodes) * bits_in(run.fine[half]);
+// Returns the facet whose cut decides whether a slot's node is there; of finer nodes only.
+constexpr FineFacet fine_facet(const NodeSlot& slot) {
+  return slot.half == 0   ? kFirstHalf
+         : slot.left == 1 ? kLeftOfTexel
+         : slot.up == 1   ? kAboveTexel
+                          : kSecondHalf;
 }
+
+// [slot][facet]: slots from kCoarseSlots on before it whose nodes are on that facet.
+constexpr std::array<std::array<uint8_t, 4>, kSlots + 1> make_fine_before() {
+  std::array<std::array<uint8_t, 4>, kSlots + 1> before{};
+  for (size_t slot = kCoarseSlots + 1; slot <= kSlots; ++slot) {
+    before[slot] = before[slot - 1];
+    ++before[slot][fine_facet(kNodeSites.slots[slot - 1])];
+  }
+  return before;
+}
+constexpr std::array<std::array<uint8_t, 4>, kSlots + 1> kFineBefore = make_fine_before();
 
 uint32_t rows_of_tile(const PatchSet& patch_set, uint32_t first_row) {
-  return std::min(kTileRows, patch_set.cell_rows - first_row);
+  return std::min(kTileRows, patch_set.height - first_row);
 }
 
-// Returns the run that begins at cell `column` of a row. Without division: every form factor asks for one.
-PatchRun run_at(const PatchSet& patch_set, uint32_t row, uint32_t column) {
-  const uint32_t row_in_tile = row % kTileRows, first_row = row - row_in_tile;
-  const uint32_t run = first_row * patch_set.runs_in_row +
-                       column / kRunCells * rows_of_tile(patch_set, first_row) + row_in_tile;
-  return {patch_set.first[run], row * patch_set.columns + column,
-          std::min(kRunCells, patch_set.columns - column), patch_set.fine[run]};
+// Returns the number of the run that a texel is in.
+uint32_t run_index(const PatchSet& patch_set, uint32_t x, uint32_t y) {
+  const uint32_t row_in_tile = y % kTileRows, first_row = y - row_in_tile;
+  return first_row * patch_set.runs_in_row + x / kRunTexels * rows_of_tile(patch_set, first_row) +
+         row_in_tile;
 }
 
-// Returns the run that a patch is in.
-PatchRun run_of_patch(const PatchSet& patch_set, uint32_t patch) {
-  const auto after = std::upper_bound(patch_set.first.begin(), patch_set.first.end(), patch);
-  return patch_run(patch_set, static_cast<uint32_t>(after - patch_set.first.begin() - 1));
+// Returns a run with the cells around its texels, and nothing else.
+PatchRun make_run(const PatchSet& patch_set, uint32_t x, uint32_t y) {
+  PatchRun run{0, x, y, std::min(kRunTexels, patch_set.width - x), true, {}, {}};
+  const uint32_t all = (1u << run.texels) - 1;
+  uint32_t here = all, left = all;
+  bool row_here = true, row_above = true;
+  if (patch_set.columns != patch_set.width) {
+    if (x + run.texels > patch_set.columns) here >>= 1;
+    if (x == 0) left &= ~1u;
+    row_here = y < patch_set.cell_rows;
+    row_above = y > 0;
+    run.whole = here == all && left == all && row_here && row_above;
+  }
+  run.cells = {static_cast<uint16_t>(row_here ? here : 0), static_cast<uint16_t>(row_here ? left : 0),
+               static_cast<uint16_t>(row_above ? here : 0), static_cast<uint16_t>(row_above ? left : 0)};
+  return run;
+}
+
+// Returns a run by one of its texels.
+PatchRun run_at(const PatchSet& patch_set, uint32_t x, uint32_t y) {
+  PatchRun run = make_run(patch_set, x - x % kRunTexels, y);
+  const uint32_t index = run_index(patch_set, x, y);
+  run.first = patch_set.first[index];
+  run.fine = patch_set.fine[index];
+  return run;
 }
 
 // Share of a node in the light at a point of a facet. a, b: column and row of the node, in units of 1/k.
@@ -99,20 +128,65 @@ std::array<NodeShare, 3> node_shares(int k, glm::dvec2 uv) {
   return {{{a, b + 1, 1 - fu}, {a + 1, b, 1 - fv}, {a + 1, b + 1, fu + fv - 1}}};
 }
 
-// A facet in its run.
-struct FacetInRun {
-  PatchRun run;
-  uint32_t half, cell;
-  int k() const { return run.subdivision(half, cell); }
-  uint32_t patch(const NodeShare& share) const {
-    return run.patch(half, node_at(k(), share.a, share.b), cell);
-  }
+// A facet by its cell.
+struct FacetPlace {
+  uint32_t column, row, half;
 };
 
-FacetInRun facet_in_run(const PatchSet& patch_set, uint32_t facet) {
-  const uint32_t cell = facet / 2, row = cell / patch_set.columns, column = cell - row * patch_set.columns;
-  const uint32_t cell_in_run = column % kRunCells;
-  return {run_at(patch_set, row, column - cell_in_run), facet % 2, cell_in_run};
+// Without division: every form factor asks for one.
+FacetPlace place_of(const PatchSet& patch_set, uint32_t facet) {
+  const uint32_t cell = facet / 2, row = static_cast<uint32_t>((cell + 0.5) * patch_set.inverse_columns);
+  return {cell - row * patch_set.columns, row, facet % 2};
+}
+
+int subdivision_at(const PatchSet& patch_set, const FacetPlace& place) {
+  const uint32_t fine =
+      patch_set
+          .fine[run_index(patch_set, place.column, place.row)][place.half == 0 ? kFirstHalf : kSecondHalf];
+  return (fine >> place.column % kRunTexels & 1) != 0 ? kFineSubdivision : kCoarseSubdivision;
+}
+
+uint32_t patch_at_place(const PatchSet& patch_set, const FacetPlace& place, uint32_t node) {
+  const uint32_t slot = kNodeSites.slot_of[place.half][node];
+  uint32_t x = place.column + kNodeSites.slots[slot].left, y = place.row + kNodeSites.slots[slot].up;
+  if (x == patch_set.width) x = 0;
+  if (y == patch_set.height) y = 0;
+  const uint32_t lane = x % kRunTexels, first_x = x - lane;
+  const bool wraps = patch_set.columns == patch_set.width;
+  const bool inside =
+      first_x > 0 && first_x + kRunTexels <= patch_set.columns && y > 0 && y < patch_set.cell_rows;
+  if (slot < kCoarseSlots && (wraps || inside))
+    return patch_set.first[run_index(patch_set, x, y)] +
+           slot * std::min(kRunTexels, patch_set.width - first_x) + lane;
+  const PatchRun run = run_at(patch_set, x, y);
+  return run.first_of(slot) + bits_in(run.texels_with(slot) & ((1u << lane) - 1));
+}
+
+uint32_t patches_of_run(const PatchRun& run) {
+  uint32_t count = 0;
+  for (uint32_t slot = 0; slot < kSlots; ++slot) count += bits_in(run.texels_with(slot));
+  return count;
+}
+
+// Finds the finely cut facets around the texels of all runs.
+std::vector<std::array<uint16_t, 4>> find_fine_facets(const Surface& surface, const PatchSet& patch_set) {
+  std::vector<std::array<uint16_t, 4>> fine(size_t{patch_set.runs_in_row} * patch_set.height);
+  const auto mark = [&](uint32_t x, uint32_t y, FineFacet facet) {
+    fine[run_index(patch_set, x, y)][facet] |= static_cast<uint16_t>(1u << x % kRunTexels);
+  };
+  for (uint32_t row = 0; row < patch_set.cell_rows; ++row)
+    for (uint32_t column = 0; column < patch_set.columns; column += kRunTexels) {
+      const uint32_t cells = std::min(kRunTexels, patch_set.columns - column);
+      const std::array<uint32_t, 2> halves = fine_halves(surface, row * patch_set.columns + column, cells);
+      for (uint32_t x = column; x < column + cells; ++x) {
+        if ((halves[0] >> (x - column) & 1) != 0) mark(x, row, kFirstHalf);
+        if ((halves[1] >> (x - column) & 1) == 0) continue;
+        mark(x, row, kSecondHalf);
+        mark(x + 1 == patch_set.width ? 0 : x + 1, row, kLeftOfTexel);
+        mark(x, row + 1 == patch_set.height ? 0 : row + 1, kAboveTexel);
+      }
+    }
+  return fine;
 }
 
 }  // namespace
@@ -124,24 +198,23 @@ PatchSet make_patches(const Surface& surface, PatchKind kind) {
     patch_set.count = surface.texel_count();
     return patch_set;
   }
+  patch_set.width = static_cast<uint32_t>(surface.width());
+  patch_set.height = static_cast<uint32_t>(surface.height());
   patch_set.columns = facet_columns(surface);
-  patch_set.runs_in_row = (patch_set.columns + kRunCells - 1) / kRunCells;
+  patch_set.inverse_columns = 1.0 / std::max(1u, patch_set.columns);
+  patch_set.runs_in_row = (patch_set.width + kRunTexels - 1) / kRunTexels;
   patch_set.cell_rows = patch_set.columns == 0 ? 0 : facet_count(surface) / 2 / patch_set.columns;
+  patch_set.fine = find_fine_facets(surface, patch_set);
   uint64_t count = 0;
-  for (uint32_t first_row = 0; first_row < patch_set.cell_rows; first_row += kTileRows)
-    for (uint32_t column = 0; column < patch_set.columns; column += kRunCells) {
-      const uint32_t cells = std::min(kRunCells, patch_set.columns - column);
-      for (uint32_t row = first_row; row < first_row + rows_of_tile(patch_set, first_row); ++row) {
-        PatchRun run{static_cast<uint32_t>(count), row * patch_set.columns + column, cells, {}};
-        run.fine = fine_facets(surface, run.first_cell, cells);
-        patch_set.first.push_back(run.first);
-        patch_set.fine.push_back(run.fine);
-        count += patches_of_half(run, 0) + patches_of_half(run, 1);
+  for (uint32_t first_row = 0; first_row < patch_set.height; first_row += kTileRows)
+    for (uint32_t x = 0; x < patch_set.width; x += kRunTexels)
+      for (uint32_t y = first_row; y < first_row + rows_of_tile(patch_set, first_row); ++y) {
+        patch_set.first.push_back(static_cast<uint32_t>(count));
+        count += patches_of_run(run_at(patch_set, x, y));
         if (count > kMaxPatches)
           throw InputError(
               fmt::format("more than {} patches, expected a smaller map, or texels as patches", kMaxPatches));
       }
-    }
   patch_set.count = static_cast<uint32_t>(count);
   patch_set.first.push_back(patch_set.count);
   return patch_set;
@@ -156,56 +229,76 @@ uint32_t node_at(int k, int column, int row) {
   return kNodesAt[static_cast<size_t>(row * quarters)][static_cast<size_t>(column * quarters)];
 }
 
-uint32_t PatchRun::patch(uint32_t half, uint32_t node, uint32_t cell_in_run) const {
-  const uint32_t of_half = first + (half == 0 ? 0 : patches_of_half(*this, 0));
-  return of_half + begin_of_node(*this, half, node) +
-         bits_in(cells_with(half, node) & ((1u << cell_in_run) - 1));
+uint32_t PatchRun::texels_with(uint32_t slot) const {
+  const NodeSlot& node = kNodeSites.slots[slot];
+  if (slot >= kCoarseSlots) return fine[fine_facet(node)];
+  return cells[static_cast<size_t>(node.left + 2 * node.up)];
 }
 
-PatchRun patch_run(const PatchSet& patch_set, uint32_t run) {
+uint32_t PatchRun::first_of(uint32_t slot) const {
+  const uint32_t coarse = std::min(slot, kCoarseSlots);
+  uint32_t begin = first + coarse * texels;
+  if (!whole) {
+    begin = first;
+    for (uint32_t before = 0; before < coarse; ++before) begin += bits_in(texels_with(before));
+  }
+  if (slot <= kCoarseSlots) return begin;
+  for (size_t facet = 0; facet < fine.size(); ++facet)
+    begin += kFineBefore[slot][facet] * bits_in(fine[facet]);
+  return begin;
+}
+
+PatchRun run_of_patch(const PatchSet& patch_set, uint32_t patch) {
+  const auto after = std::upper_bound(patch_set.first.begin(), patch_set.first.end(), patch);
+  const auto run = static_cast<uint32_t>(after - patch_set.first.begin() - 1);
   const uint32_t first_row = run / (kTileRows * patch_set.runs_in_row) * kTileRows;
   const uint32_t in_row_of_tiles = run - first_row * patch_set.runs_in_row,
                  rows = rows_of_tile(patch_set, first_row);
-  return run_at(patch_set, first_row + in_row_of_tiles % rows, in_row_of_tiles / rows * kRunCells);
+  return run_at(patch_set, in_row_of_tiles / rows * kRunTexels, first_row + in_row_of_tiles % rows);
 }
 
-NodeGroup group_of_patch(const PatchSet& patch_set, uint32_t patch) {
-  NodeGroup group{run_of_patch(patch_set, patch), 0, 0, 0};
-  const PatchRun& run = group.run;
-  uint32_t begin = run.first;
-  if (const uint32_t first_half = patches_of_half(run, 0); patch - begin >= first_half) {
-    group.half = 1;
-    begin += first_half;
-  }
-  const uint32_t in_half = patch - begin, coarse = kCoarseNodes * run.cells;
-  group.node = in_half < coarse ? in_half / run.cells
-                                : kCoarseNodes + (in_half - coarse) / bits_in(run.fine[group.half]);
-  group.first = begin + begin_of_node(run, group.half, group.node);
-  return group;
+uint32_t facet_of_slot(const PatchSet& patch_set, uint32_t slot, uint32_t x, uint32_t y) {
+  const NodeSlot& node = kNodeSites.slots[slot];
+  const uint32_t column = node.left <= x ? x - node.left : patch_set.width - 1,
+                 row = node.up <= y ? y - node.up : patch_set.height - 1;
+  return 2 * (row * patch_set.columns + column) + node.half;
+}
+
+int subdivision(const PatchSet& patch_set, uint32_t facet) {
+  return subdivision_at(patch_set, place_of(patch_set, facet));
+}
+
+uint32_t patch_at(const PatchSet& patch_set, uint32_t facet, uint32_t node) {
+  return patch_at_place(patch_set, place_of(patch_set, facet), node);
 }
 
 FacetNode facet_node(const PatchSet& patch_set, uint32_t patch) {
-  const NodeGroup group = group_of_patch(patch_set, patch);
-  uint32_t cells = group.run.cells_with(group.half, group.node);
-  for (uint32_t before = patch - group.first; before > 0; --before) cells &= cells - 1;
-  const uint32_t cell = static_cast<uint32_t>(std::countr_zero(cells));
-  return {2 * (group.run.first_cell + cell) + group.half, group.run.subdivision(group.half, cell),
-          group.node};
+  const PatchRun run = run_of_patch(patch_set, patch);
+  uint32_t slot = kSlots - 1;
+  while (run.first_of(slot) > patch || run.texels_with(slot) == 0) --slot;
+  uint32_t texels = run.texels_with(slot);
+  for (uint32_t before = patch - run.first_of(slot); before > 0; --before) texels &= texels - 1;
+  const uint32_t x = run.x + static_cast<uint32_t>(std::countr_zero(texels));
+  const uint32_t facet = facet_of_slot(patch_set, slot, x, run.y);
+  return {facet, subdivision(patch_set, facet), kNodeSites.slots[slot].node};
 }
 
 std::array<PatchShare, 3> patch_shares(const PatchSet& patch_set, uint32_t facet, glm::dvec2 uv) {
-  const FacetInRun place = facet_in_run(patch_set, facet);
-  const std::array<NodeShare, 3> nodes = node_shares(place.k(), uv);
+  const FacetPlace place = place_of(patch_set, facet);
+  const int k = subdivision_at(patch_set, place);
+  const std::array<NodeShare, 3> nodes = node_shares(k, uv);
   std::array<PatchShare, 3> shares;
-  for (size_t i = 0; i < nodes.size(); ++i) shares[i] = {place.patch(nodes[i]), nodes[i].share};
+  for (size_t i = 0; i < nodes.size(); ++i)
+    shares[i] = {patch_at_place(patch_set, place, node_at(k, nodes[i].a, nodes[i].b)), nodes[i].share};
   return shares;
 }
 
 uint32_t sample_patch(const PatchSet& patch_set, uint32_t facet, glm::dvec2 uv, double u) {
-  const FacetInRun place = facet_in_run(patch_set, facet);
-  const std::array<NodeShare, 3> nodes = node_shares(place.k(), uv);
+  const FacetPlace place = place_of(patch_set, facet);
+  const int k = subdivision_at(patch_set, place);
+  const std::array<NodeShare, 3> nodes = node_shares(k, uv);
   const size_t drawn = u < nodes[0].share ? 0 : u < nodes[0].share + nodes[1].share ? 1 : 2;
-  return place.patch(nodes[drawn]);
+  return patch_at_place(patch_set, place, node_at(k, nodes[drawn].a, nodes[drawn].b));
 }
 
 glm::dvec2 node_start_uv(uint32_t node, glm::dvec2 point) {

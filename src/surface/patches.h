@@ -14,6 +14,7 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
+#include "surface/node_sites.h"
 #include "surface/surface.h"
 
 namespace hemibake {
@@ -22,28 +23,33 @@ enum class PatchKind { kFacets, kTexels };
 
 inline constexpr int kCoarseSubdivision = 2, kFineSubdivision = 4;
 inline constexpr double kLongestCoarseEdge = 2;  // texels
-inline constexpr uint32_t kRunCells = 16;        // a run begins at multiples of this in a row of cells
-inline constexpr uint32_t kTileRows = 16;        // a tile begins at multiples of this row of cells
+inline constexpr uint32_t kRunTexels = 16;       // a run begins at multiples of this in a row of texels
+inline constexpr uint32_t kTileRows = 16;        // a tile begins at multiples of this row of texels
 
 // Returns the number of nodes of a facet cut into k² triangles.
 constexpr uint32_t node_count(int k) { return static_cast<uint32_t>((k + 1) * (k + 2) / 2); }
-inline constexpr uint32_t kCoarseNodes = node_count(kCoarseSubdivision),
-                          kFineNodes = node_count(kFineSubdivision);
+inline constexpr uint32_t kCoarseNodes = node_count(kCoarseSubdivision);
+static_assert(kFineNodes == node_count(kFineSubdivision));
 
-// The patches of a surface. Nodes are numbered run by run, in a run by half of the cell, then by node, then
-// by cell: the same node of neighbouring facets comes one after the other, and can be traced together. Runs
-// are numbered tile by tile, a tile being a run and those below it: neighbours on the map are neighbours in
-// memory, and differences of patch indices within a tile are small.
+// The patches of a surface. Nodes are numbered run by run, in a run by slot (surface/node_sites.h), then by
+// texel: nodes that stand at the same place, and the same node of neighbouring texels, come one after the
+// other and can be traced together. Runs are numbered tile by tile, a tile being a run and those below it:
+// neighbours on the map are neighbours in memory, and differences of patch indices within a tile are small.
 struct PatchSet {
   PatchKind kind = PatchKind::kFacets;
   uint32_t count = 0;
   // kFacets only:
-  uint32_t columns = 0;                       // cells in a row
-  uint32_t cell_rows = 0;                     // rows of cells
-  uint32_t runs_in_row = 0;                   // ⌈columns / kRunCells⌉
+  uint32_t columns = 0, cell_rows = 0;        // cells
+  double inverse_columns = 0;                 // 1 / columns
+  uint32_t width = 0, height = 0;             // texels
+  uint32_t runs_in_row = 0;                   // ⌈width / kRunTexels⌉
   std::vector<uint32_t> first;                // first patch of every run, and `count` at the end
-  std::vector<std::array<uint16_t, 2>> fine;  // bits of every run's cells: facets of either half cut finely
+  std::vector<std::array<uint16_t, 4>> fine;  // [run][FineFacet]: bits of the texels where it is cut finely
 };
+
+// The facets around a texel on whose finer nodes' sites others stand: both halves of its cell, and the second
+// half of the cells left of it and above it.
+enum FineFacet : uint8_t { kFirstHalf, kSecondHalf, kLeftOfTexel, kAboveTexel };
 
 // Makes the patches of a surface. Throws InputError for more than 2^31 of them.
 PatchSet make_patches(const Surface& surface, PatchKind kind);
@@ -63,36 +69,34 @@ uint32_t node_at(int k, int column, int row);
 // Returns whether a node is a corner of its facet.
 constexpr bool is_corner(uint32_t node) { return node == 0 || node == 2 || node == 5; }
 
-// Sixteen neighbouring cells, or fewer at the end of a row.
-struct PatchRun {
-  uint32_t first;       // patch
-  uint32_t first_cell;  // cells are numbered row by row
-  uint32_t cells;
-  std::array<uint16_t, 2> fine;  // as in PatchSet
+// Returns the k of a facet.
+int subdivision(const PatchSet& patch_set, uint32_t facet);
 
-  int subdivision(uint32_t half, uint32_t cell_in_run) const {
-    return (fine[half] >> cell_in_run & 1) != 0 ? kFineSubdivision : kCoarseSubdivision;
-  }
-  // Returns the bits of the cells whose facets have this node.
-  uint32_t cells_with(uint32_t half, uint32_t node) const {
-    return node < kCoarseNodes ? (1u << cells) - 1 : fine[half];
-  }
-  uint32_t patch(uint32_t half, uint32_t node, uint32_t cell_in_run) const;
-};
-// Returns a run by its number.
-PatchRun patch_run(const PatchSet& patch_set, uint32_t run);
-
-// One node on all facets of a run that have it; its patches ascend by one from cell to cell.
-struct NodeGroup {
-  PatchRun run;
-  uint32_t half, node;
-  uint32_t first;  // patch
-};
-// Returns the group that a patch is in.
-NodeGroup group_of_patch(const PatchSet& patch_set, uint32_t patch);
+// Returns the patch of a node of a facet. node: below node_count(k).
+uint32_t patch_at(const PatchSet& patch_set, uint32_t facet, uint32_t node);
 
 // Returns the node that a patch is.
 FacetNode facet_node(const PatchSet& patch_set, uint32_t patch);
+
+// Sixteen neighbouring texels, or fewer at the end of a row, with the nodes that stand at them.
+struct PatchRun {
+  uint32_t first;  // patch
+  uint32_t x, y;   // of the first texel
+  uint32_t texels;
+  bool whole;                     // all cells around its texels exist
+  std::array<uint16_t, 4> cells;  // bits of texels: the cell `left` + 2 `up` before their own exists
+  std::array<uint16_t, 4> fine;   // as in PatchSet
+
+  // Returns the bits of the texels that have a slot's node.
+  uint32_t texels_with(uint32_t slot) const;
+  // Returns the first patch of a slot; of kSlots: the first of the next run.
+  uint32_t first_of(uint32_t slot) const;
+};
+// Returns the run that a patch is in.
+PatchRun run_of_patch(const PatchSet& patch_set, uint32_t patch);
+
+// Returns the facet that a slot's node of a texel is on. x, y: texel.
+uint32_t facet_of_slot(const PatchSet& patch_set, uint32_t slot, uint32_t x, uint32_t y);
 
 // Share of a patch in the light at a point of a facet.
 struct PatchShare {

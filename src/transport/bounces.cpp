@@ -176,12 +176,13 @@ Bounces bounce_light(const LightTransport& transport, const BounceOptions& optio
   result.irradiance.push_back(times_pi(total, width, height));
 
   Progress progress("bouncing", static_cast<uint64_t>(options.bounces), "bounce");
+  const bool goes_on = at_albedo || options.converge_tolerance;
   // Texel bounce b gathers patch bounce b − 1.
   for (int b = 1; b <= options.bounces; ++b) {
     multiply(transport.final_gather, patches.current, texel_light);
     add_to(total, texel_light);
     result.irradiance.push_back(times_pi(texel_light, width, height));
-    patches.bounce();
+    if (b < options.bounces || goes_on) patches.bounce();
     if (at_albedo) at_albedo->add(patches.current);
     progress.advance(1);
   }

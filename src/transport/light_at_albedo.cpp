@@ -1,32 +1,24 @@
 #include "transport/light_at_albedo.h"
 
-#include <algorithm>
-#include <atomic>
-#include <cmath>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "transport/links/form_factors.h"
-#include "transport/series.h"
+#include "transport/solver/orthomin.h"
 
 namespace hemibake {
 namespace {
 
 constexpr size_t kGrain = 16384;
-// Largest step of the extrapolated sum of a patch that ends it, over π. The steps shrink at least by ρ each.
-constexpr double kStandsStill = 1e-5;
-constexpr uint64_t kMaxBounces = 2000;
-
-void keep_largest(std::atomic<double>& largest, double value) {
-  double known = largest.load();
-  while (value > known && !largest.compare_exchange_weak(known, value)) {
-  }
-}
+// Largest error of a texel, over π.
+constexpr double kTolerance = 1e-4;
+constexpr uint64_t kMostSteps = 2000;
 
 }  // namespace
 
 LightAtAlbedo::LightAtAlbedo(std::span<const double> direct, double albedo)
-    : albedo_(albedo), sum_(direct.begin(), direct.end()) {}
+    : albedo_(static_cast<float>(albedo)), sum_(direct.begin(), direct.end()) {}
 
 void LightAtAlbedo::add(std::span<const double> bounce) {
   power_ *= albedo_;
@@ -35,31 +27,23 @@ void LightAtAlbedo::add(std::span<const double> bounce) {
   });
 }
 
-Grid<float> LightAtAlbedo::finish(const LightTransport& transport, std::vector<double> last) {
-  Progress progress("lighting at the albedo of the bounce map", kMaxBounces, "bounce");
-  std::vector<double> next(last.size()), extrapolated(last.size());
-  double step = 1;
-  for (uint64_t made = 0; step > kStandsStill && made < kMaxBounces; ++made) {
-    multiply(transport.bounce_matrix(), last, next);
-    add(next);
-    std::atomic<double> largest = 0;
-    parallel_for(sum_.size(), kGrain, [&](size_t begin, size_t end) {
-      double worst = 0;
-      for (size_t i = begin; i < end; ++i) {
-        const double now = power_ * next[i], before = power_ / albedo_ * last[i];
-        const double value = sum_[i] + series_tail(before, now, albedo_);
-        worst = std::max(worst, std::abs(value - extrapolated[i]));
-        extrapolated[i] = value;
-      }
-      keep_largest(largest, worst);
-    });
-    step = largest;
-    last.swap(next);
+Grid<float> LightAtAlbedo::finish(const LightTransport& transport, const std::vector<double>& last) {
+  Progress progress("lighting at the albedo of the bounce map", kMostSteps, "step");
+  // What one more bounce adds is the residual of the sum.
+  std::vector<double> more(last.size());
+  multiply(transport.bounce_matrix(), last, more);
+  for (double& light : more) light *= power_ * albedo_;
+  const std::vector<float> everywhere(last.size(), static_cast<float>(albedo_));
+  Orthomin solver(transport.bounce_matrix(), everywhere, std::move(sum_), std::move(more));
+  // Rows sum to at most 1, so an error is at most the residual over 1 − ρ.
+  for (uint64_t made = 0; made < kMostSteps && solver.largest_residual() > kTolerance * (1 - albedo_);
+       ++made) {
+    if (!solver.step()) break;
     progress.advance(1);
   }
   const Grid<float>& direct = transport.direct_over_pi;
   std::vector<double> gathered(direct.size());
-  multiply(transport.final_gather, extrapolated, gathered);
+  multiply(transport.final_gather, solver.light(), gathered);
   Grid<float> light(direct.width, direct.height);
   for (size_t i = 0; i < light.size(); ++i)
     light[i] = static_cast<float>(static_cast<double>(direct[i]) + albedo_ * gathered[i]);

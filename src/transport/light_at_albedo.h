@@ -17,9 +17,9 @@ class LightAtAlbedo {
   // Adds the next bounce of the patches, E_b at albedo 1.
   void add(std::span<const double> bounce);
 
-  // Goes on bouncing until the sum and its geometric tail stand still, and gathers it at the texels.
+  // Solves for the light of all bounces from the sum so far, and gathers it at the texels; ends this object.
   // last: the bounce added last, over π. Returns E/π of all bounces at ρ, converged to 10⁻⁴ in every texel.
-  Grid<float> finish(const LightTransport& transport, std::vector<double> last);
+  Grid<float> finish(const LightTransport& transport, const std::vector<double>& last);
 
  private:
   double albedo_, power_ = 1;

@@ -17,8 +17,7 @@ namespace {
 // high as leaves every thread enough to do.
 constexpr uint32_t kTileWidth = 128, kHighestTile = 128, kLowestTile = 16, kTilesPerThread = 4;
 
-// Blocks of patches traced together: the same node of many facets sees along the same paths. As many as leave
-// every thread enough to do.
+// Blocks of patches traced together: the same node of many facets sees along the same paths.
 constexpr uint32_t kMostBlocksTogether = 32, kFewestPieces = 32;
 
 void check_row(uint32_t index, const Row& row) {
@@ -36,13 +35,13 @@ TracerCounts sum(const std::vector<TracerCounts>& counts) {
   return total;
 }
 
-// Traces all rows of a matrix and packs them.
+// Traces the rows of all texels or patches, and packs them into a matrix where there is one.
 // together: blocks traced at once, whose rows the tracer may share work among. trace_rows(first, rows,
 // counts): traces rows from `first` on. store(index, row): keeps the other results of a row.
 template <class TraceRows, class Store>
-TracerCounts trace_blocks(uint32_t together, FormFactorMatrix& form_factors, Progress& progress,
-                          const TraceRows& trace_rows, const Store& store) {
-  const uint32_t row_count = form_factors.rows, rows_together = together * FormFactorMatrix::kRowsPerBlock;
+TracerCounts trace_blocks(uint32_t row_count, uint32_t together, FormFactorMatrix* form_factors,
+                          Progress& progress, const TraceRows& trace_rows, const Store& store) {
+  const uint32_t rows_together = together * FormFactorMatrix::kRowsPerBlock;
   const size_t pieces = (size_t{row_count} + rows_together - 1) / rows_together;
   std::vector<TracerCounts> counts(pieces);
   parallel_for(pieces, 1, [&](size_t first_piece, size_t last_piece) {
@@ -54,15 +53,21 @@ TracerCounts trace_blocks(uint32_t together, FormFactorMatrix& form_factors, Pro
       for (uint32_t i = 0; i < piece_rows.size(); ++i) {
         check_row(begin + i, piece_rows[i]);
         store(begin + i, piece_rows[i]);
+        if (!form_factors) continue;
         const size_t block = (begin + i) / FormFactorMatrix::kRowsPerBlock;
-        append_row(form_factors.blocks[block], piece_rows[i].links);
+        append_row(form_factors->blocks[block], piece_rows[i].links);
         if ((begin + i + 1) % FormFactorMatrix::kRowsPerBlock == 0 || begin + i + 1 == row_count)
-          finish_block(form_factors, block);
+          finish_block(*form_factors, block);
       }
       progress.advance(piece_rows.size());
     }
   });
   return sum(counts);
+}
+
+// Returns the blocks of patches to trace at once: as many as leave every thread enough to do.
+uint32_t blocks_together(uint32_t patch_count) {
+  return std::clamp(patch_count / FormFactorMatrix::kRowsPerBlock / kFewestPieces, 1u, kMostBlocksTogether);
 }
 
 uint32_t height_of_tiles(uint32_t columns, uint32_t height) {
@@ -105,15 +110,14 @@ TracerCounts trace_tiles(const Tracer& tracer, Progress& progress, const Store& 
 
 }  // namespace
 
-LightTransport trace_surface(const Tracer& tracer, bool with_form_factors,
-                             const std::shared_ptr<SpillFile>& spill) {
+LightTransport trace_surface(const Tracer& tracer, KeptLinks kept, const std::shared_ptr<SpillFile>& spill) {
   const int width = tracer.surface().width(), height = tracer.surface().height();
   LightTransport transport;
   transport.visible_fraction = Grid<float>(width, height);
   transport.direct_over_pi = Grid<float>(width, height);
   transport.bent_normals = Grid<glm::vec3>(width, height);
   const uint32_t texels = static_cast<uint32_t>(transport.visible_fraction.size());
-  const bool trace_patches = with_form_factors && tracer.patch_set().kind == PatchKind::kFacets;
+  const bool trace_patches = kept != KeptLinks::kNone && tracer.patch_set().kind == PatchKind::kFacets;
 
   const uint32_t patch_count = tracer.patch_set().count;
   Progress progress("tracing", uint64_t{texels} + (trace_patches ? patch_count : 0), "receiver");
@@ -123,31 +127,32 @@ LightTransport trace_surface(const Tracer& tracer, bool with_form_factors,
     transport.direct_over_pi[texel] = static_cast<float>(row.direct_over_pi);
     transport.bent_normals[texel] = glm::vec3(row.bent_normal);
   };
-  if (!with_form_factors) {
+  if (kept == KeptLinks::kNone) {
     transport.counts = trace_tiles(tracer, progress, store_texel);
     return transport;
   }
   transport.final_gather = make_form_factors(texels, patch_count, spill);
   transport.counts = trace_blocks(
-      1, transport.final_gather, progress,
+      texels, 1, &transport.final_gather, progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
         tracer.trace_texels(first, true, rows, counts);
       },
       store_texel);
   if (!trace_patches) return transport;
 
-  const uint32_t blocks = patch_count / FormFactorMatrix::kRowsPerBlock;
-  const uint32_t together = std::clamp(blocks / kFewestPieces, 1u, kMostBlocksTogether);
-  transport.patch_form_factors = make_form_factors(patch_count, patch_count, spill);
   transport.patch_direct_over_pi.resize(patch_count);
+  const auto store_patch = [&](uint32_t patch, const Row& row) {
+    transport.patch_direct_over_pi[patch] = static_cast<float>(row.direct_over_pi);
+  };
+  const bool links_patches = kept == KeptLinks::kAll;
+  if (links_patches) transport.patch_form_factors = make_form_factors(patch_count, patch_count, spill);
   const TracerCounts of_patches = trace_blocks(
-      together, transport.patch_form_factors, progress,
+      patch_count, blocks_together(patch_count), links_patches ? &transport.patch_form_factors : nullptr,
+      progress,
       [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
-        tracer.trace_patches(first, true, rows, counts);
+        tracer.trace_patches(first, links_patches, rows, counts);
       },
-      [&](uint32_t patch, const Row& row) {
-        transport.patch_direct_over_pi[patch] = static_cast<float>(row.direct_over_pi);
-      });
+      store_patch);
   transport.counts.rays += of_patches.rays;
   transport.counts.truncated += of_patches.truncated;
   return transport;

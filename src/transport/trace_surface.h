@@ -17,9 +17,11 @@ struct LightTransport {
   Grid<float> direct_over_pi;     // E₀/π per texel
   Grid<glm::vec3> bent_normals;   // per texel, unit
   FormFactorMatrix final_gather;  // texel × patch; empty without form factors
-  // patch × patch; empty if patches are texels (then final_gather serves for both) and without form factors
+  // patch × patch; empty if patches are texels (then final_gather serves for both) and without their form
+  // factors
   FormFactorMatrix patch_form_factors;
-  std::vector<float> patch_direct_over_pi;  // E₀/π per patch; empty as patch_form_factors
+  std::vector<float>
+      patch_direct_over_pi;  // E₀/π per patch; empty if patches are texels and without form factors
   TracerCounts counts;
 
   // Returns the matrix of one bounce: patch × patch.
@@ -32,10 +34,13 @@ struct LightTransport {
   }
 };
 
-// Traces every texel, and every patch if `with_form_factors`: only then are these kept. The same bytes at any
-// thread count. Throws Cancelled between blocks of rows. spill: file that form factors go to; none: they
-// stay in memory.
-LightTransport trace_surface(const Tracer& tracer, bool with_form_factors,
+// What is kept of the view of texels and patches: their sky; the form factors of texels too, for one bounce;
+// or those of patches as well, for any number.
+enum class KeptLinks { kNone, kOfTexels, kAll };
+
+// Traces every texel, and every patch unless `kept` is kNone. The same bytes at any thread count. Throws
+// Cancelled between blocks of rows. spill: file that form factors go to; none: they stay in memory.
+LightTransport trace_surface(const Tracer& tracer, KeptLinks kept,
                              const std::shared_ptr<SpillFile>& spill = nullptr);
 
 }  // namespace hemibake

@@ -31,7 +31,7 @@ Traced trace_light(const Surface& surface, PatchKind patches, int rays, int boun
   options.rays = rays;
   options.patch_kind = patches;
   const auto tracer = make_embree_tracer(surface, options);
-  Traced traced{trace_surface(*tracer, true), {}};
+  Traced traced{trace_surface(*tracer, KeptLinks::kAll), {}};
   traced.bounces = bounce_light(traced.transport, {bounces, std::nullopt, bounces});
   return traced;
 }

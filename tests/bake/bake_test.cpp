@@ -33,7 +33,7 @@ TEST(Bake, IsItsSteps) {
   const BakeResult result = bake(map, settings_with(16, 3), {});
   SliceOptions slices;
   slices.azimuths = 16;
-  const LightTransport transport = trace_surface(*make_slice_tracer(map.surface, slices), true);
+  const LightTransport transport = trace_surface(*make_slice_tracer(map.surface, slices), KeptLinks::kAll);
   BounceOptions options;
   options.bounces = 3;
   const Bounces bounces = bounce_light(transport, options);

@@ -25,7 +25,7 @@ Baked bake(const Surface& surface, int rays, PatchKind patches = PatchKind::kFac
   options.rays = rays;
   options.patch_kind = patches;
   const auto tracer = make_embree_tracer(surface, options);
-  Baked baked{trace_surface(*tracer, true), {}, {}};
+  Baked baked{trace_surface(*tracer, KeptLinks::kAll), {}, {}};
   baked.bounces = bounce_light(baked.seen, {});
   baked.errors = estimate_errors(*tracer->reseeded(99), baked.seen, baked.bounces);
   return baked;

@@ -23,7 +23,8 @@ TargetOptions slice_target(const Surface& surface, double error) {
 }
 
 LightTransport trace(const TargetOptions& options, int rays, uint64_t seed) {
-  return trace_surface(*options.make_tracer(rays, seed), options.with_light);
+  return trace_surface(*options.make_tracer(rays, seed),
+                       options.with_light ? KeptLinks::kAll : KeptLinks::kNone);
 }
 
 // Over the whole map, against a bake with many azimuths and bounces.

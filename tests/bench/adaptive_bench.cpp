@@ -40,7 +40,7 @@ std::array<Measured, 2> measure(const Surface& surface, int rays) {
     RayOptions options;
     options.rays = rays;
     options.seed = static_cast<uint64_t>(seed);
-    const LightTransport seen = trace_surface(*make_embree_tracer(surface, options), false);
+    const LightTransport seen = trace_surface(*make_embree_tracer(surface, options), KeptLinks::kNone);
     for (size_t i = 0; i < texels; ++i)
       for (size_t q = 0; q < 2; ++q) {
         const double value = static_cast<double>(q == 0 ? seen.visible_fraction[i] : seen.direct_over_pi[i]);

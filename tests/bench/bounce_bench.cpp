@@ -56,7 +56,7 @@ Rate copy_rate() {
 void run(const BenchMap& map, int azimuths, const Rate& copy) {
   SliceOptions options;
   options.azimuths = azimuths;
-  const LightTransport seen = trace_surface(*make_slice_tracer(map.surface, options), true);
+  const LightTransport seen = trace_surface(*make_slice_tracer(map.surface, options), KeptLinks::kAll);
   const FormFactorMatrix& links = seen.patch_form_factors;
   std::vector<double> light(seen.patch_direct().begin(), seen.patch_direct().end()), next(light.size());
   const Rate rate = best_rate(static_cast<double>(kBounces * links.stored_bytes()), [&] {

@@ -132,7 +132,7 @@ void run(const std::string& map, const std::string& tracer_name, int rays) {
     options.rays = rays;
     tracer = make_embree_tracer(surface, options);
   }
-  const LightTransport seen = trace_surface(*tracer, true);
+  const LightTransport seen = trace_surface(*tracer, KeptLinks::kAll);
   fmt::print("{}, {} {}: {:.1f} M patches, {:.1f} M links between them\n", map, tracer_name, rays,
              1e-6 * seen.bounce_matrix().rows, 1e-6 * static_cast<double>(seen.bounce_matrix().count()));
   const Cost fast = accelerated(seen), slow = plain(seen);

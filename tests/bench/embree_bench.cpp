@@ -81,7 +81,7 @@ void run(const BenchMap& map, int rays) {
              million_rays / ao_only, ao_only / bare_occlusion);
 
   const double before = process_cpu_seconds();
-  const LightTransport seen = trace_surface(*tracer, true);
+  const LightTransport seen = trace_surface(*tracer, KeptLinks::kAll);
   const double traced = process_cpu_seconds();
   bounce_light(seen, {});
   const double bounced = process_cpu_seconds();

@@ -71,7 +71,7 @@ BounceMap bounce_map_of(const Truth& truth) {
 Truth trace(const Surface& surface) {
   SliceOptions slices;
   slices.azimuths = 64;
-  Truth truth{trace_surface(*make_slice_tracer(surface, slices), true), {}, {}};
+  Truth truth{trace_surface(*make_slice_tracer(surface, slices), KeptLinks::kAll), {}, {}};
   for (size_t a = 0; a < kAlbedos.size(); ++a) {
     const std::vector<float> albedo(truth.transport.patch_direct_over_pi.size(),
                                     static_cast<float>(kAlbedos[a]));

@@ -53,7 +53,7 @@ Means bake(const Surface& surface, int factor, PatchKind patches, int rays) {
   options.rays = rays;
   options.patch_kind = patches;
   const auto tracer = make_embree_tracer(surface, options);
-  const Bounces bounces = bounce_light(trace_surface(*tracer, true), {10, std::nullopt, 10});
+  const Bounces bounces = bounce_light(trace_surface(*tracer, KeptLinks::kAll), {10, std::nullopt, 10});
   Means means{};
   double count = 0;
   for (int y = 0; y < surface.height(); y += factor)

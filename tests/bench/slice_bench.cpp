@@ -39,7 +39,7 @@ struct Planes {
 
 Planes trace(const Tracer& tracer, bool with_links) {
   const double start = process_cpu_seconds();
-  const LightTransport seen = trace_surface(tracer, with_links);
+  const LightTransport seen = trace_surface(tracer, with_links ? KeptLinks::kAll : KeptLinks::kNone);
   Planes planes{seen.visible_fraction.values, seen.direct_over_pi.values, {}, process_cpu_seconds() - start};
   if (with_links) {
     BounceOptions options;

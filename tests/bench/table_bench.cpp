@@ -110,7 +110,7 @@ void measure(const MapKind& kind, int side, const Setting& setting, Numbers& num
   const Surface surface = make_map(kind, side);
   const double start = process_cpu_seconds();
   const auto tracer = setting.make_tracer(surface);
-  const LightTransport seen = trace_surface(*tracer, setting.with_links);
+  const LightTransport seen = trace_surface(*tracer, setting.with_links ? KeptLinks::kAll : KeptLinks::kNone);
   numbers.cpu_seconds = process_cpu_seconds() - start;
   numbers.rays = seen.counts.rays;
   const size_t texels = surface.texel_count();

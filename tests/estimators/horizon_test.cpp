@@ -121,7 +121,7 @@ TEST(Horizon, VisibilityAndAoConvergeToTheTracer) {
     const Surface surface = synthetic_surface(kind, 32, 32);
     SliceOptions slices;
     slices.azimuths = 256;
-    const LightTransport truth = trace_surface(*make_slice_tracer(surface, slices), true);
+    const LightTransport truth = trace_surface(*make_slice_tracer(surface, slices), KeptLinks::kAll);
     const double radius_m = 3;
     const Estimate estimate = estimate_horizon(surface, fine(AoKind::kCosine, radius_m, 256, 12 * 96));
     double worst_ao = 0, worst_visibility = 0;

@@ -20,7 +20,7 @@ LightTransport traced(const Surface& surface, PatchKind patches) {
   RayOptions options;
   options.rays = 64;
   options.patch_kind = patches;
-  return trace_surface(*make_embree_tracer(surface, options), true);
+  return trace_surface(*make_embree_tracer(surface, options), KeptLinks::kAll);
 }
 
 TEST(LightScene, UniformSkyAtOneAlbedoIsTheWeightedSumOfTheBake) {

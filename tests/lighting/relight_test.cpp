@@ -56,7 +56,7 @@ class RelightBricks : public testing::Test {
       RayOptions options;
       options.rays = 64;
       const auto tracer = make_embree_tracer(surface(), options);
-      return trace_surface(*tracer, true);
+      return trace_surface(*tracer, KeptLinks::kAll);
     }();
     return traced;
   }

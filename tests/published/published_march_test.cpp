@@ -49,7 +49,7 @@ class PublishedMarch : public testing::Test {
     Surface surface = make_surface(std::move(filtered), 1, kAmplitude, Edge::kWrap);
     surface.normals = decode_normal_map(encoded_normals_, {.y = NormalY::kUp});
     const auto tracer = make_march_tracer(surface, options);
-    const LightTransport transport = trace_surface(*tracer, true);
+    const LightTransport transport = trace_surface(*tracer, KeptLinks::kAll);
     BounceOptions bounces;
     bounces.bounces = kBounces;
     Bake bake;

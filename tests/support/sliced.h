@@ -10,7 +10,7 @@ namespace hemibake {
 inline LightTransport sliced(const Surface& surface) {
   SliceOptions options;
   options.azimuths = 8;
-  return trace_surface(*make_slice_tracer(surface, options), true);
+  return trace_surface(*make_slice_tracer(surface, options), KeptLinks::kAll);
 }
 
 }  // namespace hemibake

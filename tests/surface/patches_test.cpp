@@ -40,9 +40,7 @@ TEST(PatchKind, EveryNodeOfEveryFacetOnce) {
       const FacetNode node = facet_node(patches, patch);
       EXPECT_EQ(nodes_of[node.facet] >> node.node & 1, 0u);
       nodes_of[node.facet] |= 1u << node.node;
-      const NodeGroup group = group_of_patch(patches, patch);
-      EXPECT_EQ(group.node, node.node);
-      EXPECT_EQ(group.run.patch(group.half, group.node, node.facet / 2 - group.run.first_cell), patch);
+      EXPECT_EQ(patch_at(patches, node.facet, node.node), patch);
       // Its own light is all it draws.
       const glm::dvec2 uv = node_uv(node.node);
       for (const double choice : {0.0, 0.5, 0.999999})
@@ -64,12 +62,34 @@ TEST(PatchKind, ATileIsOnePieceOfMemory) {
   const PatchSet patches = make_patches(surface, PatchKind::kFacets);
   uint32_t run = 0;
   for (const uint32_t first_row : {0u, 16u})
-    for (const uint32_t column : {0u, 16u, 32u})
-      for (uint32_t row = first_row; row < std::min(20u, first_row + 16); ++row, ++run) {
-        EXPECT_EQ(patch_run(patches, run).first_cell, row * 39 + column);
-        EXPECT_EQ(group_of_patch(patches, patches.first[run + 1] - 1).run.first, patches.first[run]);
+    for (const uint32_t x : {0u, 16u, 32u})
+      for (uint32_t y = first_row; y < std::min(21u, first_row + 16); ++y, ++run) {
+        if (patches.first[run] == patches.first[run + 1]) continue;
+        const PatchRun found = run_of_patch(patches, patches.first[run]);
+        EXPECT_EQ(found.x, x);
+        EXPECT_EQ(found.y, y);
+        EXPECT_EQ(run_of_patch(patches, patches.first[run + 1] - 1).first, found.first);
       }
   EXPECT_EQ(patches.first.size(), run + 1);
+}
+
+// What stands at one place comes in one slot after the other, of one run.
+TEST(PatchKind, NodesOfOnePlaceAreOfOneSite) {
+  for (const Edge edge : {Edge::kWrap, Edge::kOpen}) {
+    const Surface surface = half_rough_surface(edge);
+    const PatchSet patches = make_patches(surface, PatchKind::kFacets);
+    for (uint32_t patch = 0; patch < patches.count; ++patch) {
+      const PatchRun run = run_of_patch(patches, patch);
+      const FacetNode node = facet_node(patches, patch);
+      const NodeSlot& slot = kNodeSites.slots[kNodeSites.slot_of[node.facet % 2][node.node]];
+      const NodeSite& site = kNodeSites.sites[slot.site];
+      const glm::dvec2 at = patch_position_texels(surface, patches, patch) - glm::dvec2(site.x, site.y) / 4.0;
+      const auto x = static_cast<uint32_t>(at.x) % 40, y = static_cast<uint32_t>(at.y) % 21;
+      EXPECT_EQ(y, run.y);
+      EXPECT_TRUE(x >= run.x && x < run.x + run.texels);
+      EXPECT_EQ(facet_of_slot(patches, kNodeSites.slot_of[node.facet % 2][node.node], x, y), node.facet);
+    }
+  }
 }
 
 // Light that is linear on a facet comes back exactly in the mean over the choices, wherever it is asked for;

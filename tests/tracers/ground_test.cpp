@@ -76,7 +76,7 @@ TEST(Ground, PlaneIsLitByGroundThatLooksAsItself) {
       options.converge_tolerance = 1e-6;
       options.max_bounces = 200;
       options.bounce_albedo = albedo;
-      const Bounces bounces = bounce_light(trace_surface(*tracer, true), options);
+      const Bounces bounces = bounce_light(trace_surface(*tracer, KeptLinks::kAll), options);
       for (size_t i = 0; i < surface.texel_count(); ++i) {
         EXPECT_NEAR(bounces.total[i], kPi, 1e-5 * kPi);
         // Nodes have fewer rays: 0.01 of V.
@@ -93,7 +93,7 @@ TEST(Ground, EnergySumsToPi) {
       BounceOptions options;
       options.bounces = 5;
       options.converge_tolerance = 1e-6;
-      const Bounces bounces = bounce_light(trace_surface(*tracer, true), options);
+      const Bounces bounces = bounce_light(trace_surface(*tracer, KeptLinks::kAll), options);
       for (const float total : bounces.total.values) EXPECT_NEAR(total, kPi, 2e-5 * kPi);
     }
   }
@@ -164,7 +164,7 @@ TEST(Ground, BouncesAgreeWithTheReferencePathTracer) {
   const Surface surface = synthetic_surface(SyntheticKind::kTerrain, 32, 32, 0.3, {}, Edge::kGround);
   BounceOptions options;
   options.bounces = 3;
-  const Bounces bounces = bounce_light(trace_surface(*slices(surface, 128), true), options);
+  const Bounces bounces = bounce_light(trace_surface(*slices(surface, 128), KeptLinks::kAll), options);
   std::vector<uint32_t> texels;
   for (uint32_t texel = 0; texel < surface.texel_count(); texel += 3) texels.push_back(texel);
   RefereeOptions judging;

@@ -25,7 +25,7 @@ TEST(Reference, StatesItsOwnErrorHonestly) {
   SliceOptions slices;
   slices.azimuths = 2003;
   slices.seed = 99;
-  const LightTransport truth = trace_surface(*make_slice_tracer(surface, slices), false);
+  const LightTransport truth = trace_surface(*make_slice_tracer(surface, slices), KeptLinks::kNone);
   const double of_ao = error_of(reference.planes.uniform.values, truth.visible_fraction.values, {}).rmse;
   const double of_direct = error_of(reference.planes.cosine.values, truth.direct_over_pi.values, {}).rmse;
   // An rms over 576 texels from one pair of seeds; neighbours share azimuths in sixteens, so it is known to

@@ -16,7 +16,7 @@ LightTransport see(const Surface& surface, PatchKind patches) {
   SliceOptions options;
   options.azimuths = 8;
   options.patch_kind = patches;
-  return trace_surface(*make_slice_tracer(surface, options), true);
+  return trace_surface(*make_slice_tracer(surface, options), KeptLinks::kAll);
 }
 
 std::vector<float> everywhere(const LightTransport& transport, float albedo) {

@@ -79,7 +79,7 @@ LightTransport see(const Surface& surface, PatchKind patches, int rays, uint64_t
   options.seed = seed;
   options.rays = rays;
   options.patch_kind = patches;
-  return trace_surface(*make_embree_tracer(surface, options), true);
+  return trace_surface(*make_embree_tracer(surface, options), KeptLinks::kAll);
 }
 
 // At albedo 1 all light comes back out: π in every texel, whatever the map.

@@ -10,7 +10,7 @@ namespace {
 
 TEST(DirectLight, IsBounceLightOfNoBounces) {
   const Surface surface = white_noise_surface(33, 17, 0.2);
-  const LightTransport transport = trace_surface(*make_slice_tracer(surface, {}), false);
+  const LightTransport transport = trace_surface(*make_slice_tracer(surface, {}), KeptLinks::kNone);
   BounceOptions options;
   options.bounces = 0;
   const Bounces expected = bounce_light(transport, options), actual = direct_light(transport);

@@ -5,24 +5,28 @@
 
 #include "core/constants.h"
 #include "sampling/low_discrepancy.h"
-#include "sampling/warp.h"
 
 namespace hemibake {
 namespace {
 
-constexpr uint64_t kRotation = 0x511ce08, kNodeShift = 0x511ce02;
+constexpr uint64_t kRotation = 0x511ce08;
 
 // Paths of a family: azimuths times rotations. More rotations cover the circle better, but fewer packets then
 // share a path. The families of nodes are rotated apart.
-constexpr int kTexelPaths = 256, kNodePaths = 32;
-// Cached segments of a family; there is one family of texels and 30 of nodes.
-constexpr int kCachedTexelSegments = 16384, kCachedNodeSegments = 1024;
+constexpr int kTexelPaths = 256, kCornerPaths = 128, kNodePaths = 32;
+// Cached segments of a family.
+constexpr int kCachedTexelSegments = 16384, kCachedCornerSegments = 4096, kCachedNodeSegments = 1024;
 constexpr size_t kBytesPerCachedSegment = 560;  // about 22 crossings and their facets, and the corners
 
 // Azimuths of a corner over those of other nodes: the corners next to a texel make most of its first bounce,
 // and their light is the sky they see. Their form factors lead on to many others: sampled along every second
 // one.
 constexpr int kCornerFactor = 2;
+
+// Texels: a hit of a node on a facet that touches it counts as so far away. With less, nodes in deep folds
+// see little but each other, and light stays there longer than it does along a facet that brightens away from
+// the fold; with more it leaves too early (README.md).
+constexpr double kLeastNodeDistance = 0.0075;
 
 // Returns the azimuths of a node: at least ten, with fewer, nodes in deep folds see only each other; twice an
 // odd number, which integrates the cosine weight of a tilted facet well (odd harmonics above the first
@@ -64,24 +68,20 @@ SlicePaths make_texel_paths(int azimuths, uint64_t seed) {
   return family;
 }
 
-// Makes a node's family: each azimuth starts at another low-discrepancy point of the small copy of its facet.
-SlicePaths make_node_paths(int azimuths, uint64_t seed, uint32_t half, uint32_t node) {
-  const auto make_path = [&](int rotation, int azimuth, double angle) {
-    const uint64_t shift = 2 * static_cast<uint64_t>(rotation);
-    const double shift_u = unit_interval(mix_bits(seed, kNodeShift, shift));
-    const double shift_v = unit_interval(mix_bits(seed, kNodeShift, shift + 1));
-    const uint32_t index = static_cast<uint32_t>(azimuth);
-    const glm::dvec2 point =
-        sample_uniform_triangle({cranley_patterson_rotate(radical_inverse(2, index), shift_u),
-                                 cranley_patterson_rotate(radical_inverse(3, index), shift_v)});
-    const glm::dvec2 uv = node_start_uv(node, point);
-    return make_slice_path(half == 0 ? uv : 1.0 - uv, angle, true);
+// Makes the family of the nodes at a site.
+SlicePaths make_node_paths(int azimuths, uint64_t seed, uint32_t site) {
+  const NodeSite& place = kNodeSites.sites[site];
+  const glm::dvec2 start = glm::dvec2(place.x, place.y) / 4.0;
+  const auto make_path = [&](int, int, double angle) {
+    return make_slice_path(start, angle, place.slots == 1);
   };
-  const int factor = is_corner(node) ? kCornerFactor : 1;
-  SlicePaths family = make_paths(factor * azimuths_of_node(azimuths), kNodePaths,
-                                 rotation_offset(seed, 1 + node_family(half, node)), make_path);
-  family.hit_azimuth_stride = factor;
-  reserve_cache(kCachedNodeSegments, family);
+  const bool corner = site == 0;
+  SlicePaths family =
+      make_paths((corner ? kCornerFactor : 1) * azimuths_of_node(azimuths),
+                 corner ? kCornerPaths : kNodePaths, rotation_offset(seed, 1 + site), make_path);
+  family.least_distance = kLeastNodeDistance;
+  family.hit_azimuth_stride = corner ? kCornerFactor : 1;
+  reserve_cache(corner ? kCachedCornerSegments : kCachedNodeSegments, family);
   return family;
 }
 
@@ -91,16 +91,13 @@ SliceFamilies make_slice_families(int azimuths, PatchKind patches, uint64_t seed
   SliceFamilies families;
   families.texels = make_texel_paths(azimuths, seed);
   if (patches != PatchKind::kFacets) return families;
-  for (uint32_t half = 0; half < 2; ++half)
-    for (uint32_t node = 0; node < kFineNodes; ++node)
-      families.nodes.push_back(make_node_paths(azimuths, seed, half, node));
+  for (uint32_t site = 0; site < kSites; ++site)
+    families.nodes.push_back(make_node_paths(azimuths, seed, site));
   return families;
 }
 
 size_t cache_bytes(const SlicePaths& paths) {
   return paths.paths.size() * static_cast<size_t>(paths.cache->per_path) * kBytesPerCachedSegment;
 }
-
-size_t node_family(uint32_t half, uint32_t node) { return half * kFineNodes + node; }
 
 }  // namespace hemibake

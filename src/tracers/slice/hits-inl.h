@@ -28,7 +28,7 @@ struct Vectors {
 struct Lanes {
   Vectors base, rise;     // the start is `rise` above `base`
   Vectors to_top;         // from the start to the highest texel
-  Vectors tangent_slope;  // lowest slope
+  Vectors tangent_slope;  // lowest slope, where there is one receiver
   Vectors slope;          // of the horizon so far; while hits are found, of the next one
   Vectors above;          // kAllIntervals only: cosine_above the horizon so far
 };
@@ -107,11 +107,31 @@ constexpr float kUnreachable = 1e30f;
 // A slice of a steep receiver holds up to π times the mean of its slices.
 constexpr int kMostHits = 22 * kHitsPerSlice / 7 + 1;
 
-// Slopes of a packet's hits: the blocked part of each lane's slice, sampled at equal steps of its weight.
+// Slopes of a packet's hits, of all its receivers: the blocked part of each slice, sampled at equal steps of
+// its weight.
 struct HitSlopes {
   // Ascending; kUnreachable after a lane's last one.
-  alignas(64) float slope[kMostHits + 1][kSliceLanes];
-  int most = 0;  // of the lane with the most
+  alignas(64) float slope[kMostReceivers * kMostHits + 1][kSliceLanes];
+  alignas(64) float receiver[kMostReceivers * kMostHits + 1][kSliceLanes];  // whose hit it is
+  int rows[kParts] = {};
+
+  // Puts the rows of a part from `first` on, ascending like those before, in their places among these.
+  HWY_INLINE void merge(size_t part, int first) {
+    if (first == 0) return;
+    for (int begin = first; begin < rows[part]; ++begin)
+      for (int row = begin; row > 0; --row) {
+        float *low = slope[row - 1] + part * kWidth, *high = slope[row] + part * kWidth;
+        const V below = hn::Load(kF, low), above = hn::Load(kF, high);
+        const auto swap = hn::Gt(below, above);
+        if (hn::AllFalse(kF, swap)) break;
+        hn::Store(hn::IfThenElse(swap, above, below), kF, low);
+        hn::Store(hn::IfThenElse(swap, below, above), kF, high);
+        float *whose_low = receiver[row - 1] + part * kWidth, *whose_high = receiver[row] + part * kWidth;
+        const V low_one = hn::Load(kF, whose_low), high_one = hn::Load(kF, whose_high);
+        hn::Store(hn::IfThenElse(swap, high_one, low_one), kF, whose_low);
+        hn::Store(hn::IfThenElse(swap, low_one, high_one), kF, whose_high);
+      }
+  }
 };
 
 // A slice above the tangent plane, by the angle δ above it. With θ the angle of the plane, ∫ cosine over the
@@ -150,7 +170,9 @@ struct Slice {
 
 // Places the hits of one part's lanes between the tangent plane and the horizon: at (offset + 0, 1, 2, …) /
 // per_weight of the weight above the plane, so that all hits weigh alike. offset: in [0, 1).
-HWY_INLINE void place_hits(size_t part, V tangent_slope, V horizon, V per_weight, V offset, HitSlopes& hits) {
+// receiver: whose hits they are; the rows go behind those that are there.
+HWY_INLINE void place_hits(size_t part, V tangent_slope, V horizon, V per_weight, V offset, float receiver,
+                           HitSlopes& hits) {
   const V zero = hn::Zero(kF), one = hn::Set(kF, 1.0f), unreachable = hn::Set(kF, kUnreachable);
   const Slice slice(tangent_slope);
   const V most_delta = hn::Max(zero, hn::Sub(hn::Atan(kF, horizon), slice.angle));
@@ -161,7 +183,6 @@ HWY_INLINE void place_hits(size_t part, V tangent_slope, V horizon, V per_weight
                                  hn::Min(hn::Max(wanted, zero), hn::Set(kF, float{kMostHits})), zero);
   const V weight_of_hit = hn::Div(one, hn::Max(per_weight, hn::Set(kF, 1e-30f)));
   const int most = static_cast<int>(hn::GetLane(hn::MaxOfLanes(kF, count)));
-  hits.most = std::max(hits.most, most);
   // The weight grows with the angle nearly as sin² does over a quarter rotation, exactly so on level ground.
   const V over_whole = hn::Div(one, whole);
   const V widths = hn::Sub(one, hn::Mul(slice.angle, hn::Set(kF, 0.636619772f)));
@@ -171,10 +192,11 @@ HWY_INLINE void place_hits(size_t part, V tangent_slope, V horizon, V per_weight
     const V delta = slice.nearer(hn::Mul(widths, hn::Asin(kF, hn::Sqrt(share))), weight, most_delta);
     const auto used = hn::Lt(hn::Set(kF, static_cast<float>(k)), count);
     const V slope = hn::Min(horizon, slice.slope_at(delta));
-    hn::StoreU(hn::IfThenElse(used, slope, unreachable), kF, hits.slope[k] + part * kWidth);
+    const int row = hits.rows[part]++;
+    hn::Store(hn::IfThenElse(used, slope, unreachable), kF, hits.slope[row] + part * kWidth);
+    hn::Store(hn::Set(kF, receiver), kF, hits.receiver[row] + part * kWidth);
     weight = hn::Add(weight, weight_of_hit);
   }
-  hn::StoreU(unreachable, kF, hits.slope[most] + part * kWidth);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -101,8 +101,11 @@ void find_crossings(const HeightPyramid& pyramid, const SlicePath& path, int seg
       if (families[family].distances[0] > families[last].distances[0]) last = family;
     next[last] = 0;
   } else if (!path.starts_in_facet) {
+    // A texel, or a point of the edge to the right of it, below it, or between the two.
     const int x = static_cast<int>(p.x), y = static_cast<int>(p.y), texel = y * pitch + x;
-    found.crossings[count] = {texel, texel, 0, HUGE_VALF};
+    const bool right = p.x > x, down = p.y > y;
+    const int a = texel + (right && down ? pitch : 0), b = texel + (right ? 1 : down ? pitch : 0);
+    found.crossings[count] = {a, b, static_cast<float>(right ? p.x - x : p.y - y), HUGE_VALF};
     found.facets[count++] = {static_cast<int8_t>(x), static_cast<int8_t>(y), 0, 0};
   }
   // Chooses the next family without branches: it follows no pattern.

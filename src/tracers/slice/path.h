@@ -31,10 +31,11 @@ struct SlicePath {
   glm::dvec2 origin;     // start in its cell, 0..1
   glm::dvec2 direction;  // unit
   double step;           // horizontal length of a segment, texels: it spans kSegmentCells along x or y
-  bool starts_in_facet;  // the start lies inside a facet, not on a texel centre
+  bool starts_in_facet;  // the start lies inside a facet, not on a texel centre or an edge
 };
 
-// Makes a path. origin: in its cell, 0..1. azimuth: radians. starts_in_facet: not on a texel centre.
+// Makes a path. origin: in its cell, 0..1. azimuth: radians. starts_in_facet: not on a texel centre or an
+// edge.
 SlicePath make_slice_path(const glm::dvec2& origin, double azimuth, bool starts_in_facet);
 
 // Returns the first corner of the square window over `segments` segments from `segment` on, relative to the
@@ -56,7 +57,8 @@ struct SegmentCrossings {
 
 // Finds the crossings of one segment by distance, both ends included, and the facets before them. At the
 // first crossing the path enters the facet before the second: the crossing before the segment, the start on a
-// texel, or, for a start inside a facet, the crossing where the path leaves it. The view begins behind it.
+// texel or an edge, or, for a start inside a facet, the crossing where the path leaves it. The view begins
+// behind it.
 void find_crossings(const HeightPyramid& pyramid, const SlicePath& path, int segment,
                     SegmentCrossings& found);
 
@@ -74,6 +76,7 @@ struct CachedSegments {
 struct SlicePaths {
   int azimuths = 0;
   int hit_azimuth_stride = 1;    // hits are sampled along every n-th azimuth only
+  double least_distance = 0;     // texels: nearer hits count as so far away
   int rotations = 0;             // rotations of the azimuths
   std::vector<SlicePath> paths;  // [rotation · azimuths + azimuth]
   std::shared_ptr<CachedSegments> cache;

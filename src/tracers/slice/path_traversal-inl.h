@@ -45,15 +45,16 @@ class PathTraversal {
     inverse_step_ = static_cast<float>(1 / segments_.path().step);
   }
 
-  // Adds to `view` what the packet sees along the path.
+  // Adds to `views` what the receivers of a packet see along the path.
   template <Query kQuery>
-  void trace(const SlicePacket& packet, uint32_t azimuth, PacketView& view) {
+  void trace(const SlicePacket& packet, std::span<const SliceReceivers> receivers, uint32_t azimuth,
+             std::span<PacketView> views) {
     const SlicePath& path = segments_.path();
-    Lanes lanes = start(packet);
+    Lanes lanes = start(packet, receivers);
     for (int segment = 0;;) {
       if (!reaches_map(packet, segment)) break;
       if (segment > last_segment_) {
-        if (blocks_below_) count_truncated(lanes, segment, view);
+        if (blocks_below_) count_truncated(lanes, segment, views);
         break;
       }
       if (segment > 0) {
@@ -63,7 +64,7 @@ class PathTraversal {
         if (skipped > 0) continue;
       }
       if constexpr (kQuery == Query::kAllIntervals) {
-        find_intervals(packet, azimuth, segment, lanes, view);
+        find_intervals(packet, azimuth, segment, lanes, views.front());
       } else {
         raise_horizon(packet, segment, lanes);
       }
@@ -71,21 +72,27 @@ class PathTraversal {
     }
     if (blocks_below_)
       for (V& slope : lanes.slope.part) slope = hn::Max(slope, hn::Zero(kF));
-    add_sky(lanes.slope, path.direction, view.sky);
-    if constexpr (kQuery == Query::kSampledHits) find_hits(packet, azimuth, lanes, view);
+    const Vectors horizon = lanes.slope;
+    for (size_t r = 0; r < receivers.size(); ++r)
+      add_sky(above_tangent(receivers[r], horizon), path.direction, views[r].sky);
+    if constexpr (kQuery == Query::kSampledHits) find_hits(packet, receivers, azimuth, lanes, views);
   }
 
  private:
-  Lanes start(const SlicePacket& packet) const;
+  Vectors tangent_slope(const SliceReceivers& receivers) const;
+  Vectors above_tangent(const SliceReceivers& receivers, const Vectors& horizon) const;
+  Lanes start(const SlicePacket& packet, std::span<const SliceReceivers> receivers) const;
   bool horizon_is_final(const Lanes& lanes, int segment) const;
-  void count_truncated(const Lanes& lanes, int segment, PacketView& view) const;
+  void count_truncated(const Lanes& lanes, int segment, std::span<PacketView> views) const;
   int segments_to_skip(const SlicePacket& packet, const Lanes& lanes, int segment);
   void raise_horizon(const SlicePacket& packet, int segment, Lanes& lanes);
   void find_intervals(const SlicePacket& packet, uint32_t azimuth, int segment, Lanes& lanes,
                       PacketView& view);
-  void find_hits(const SlicePacket& packet, uint32_t azimuth, Lanes& lanes, PacketView& view);
+  bool place_all_hits(std::span<const SliceReceivers> receivers, uint32_t azimuth, const Vectors& horizon);
+  void find_hits(const SlicePacket& packet, std::span<const SliceReceivers> receivers, uint32_t azimuth,
+                 Lanes& lanes, std::span<PacketView> views);
   bool hits_are_final(const Lanes& lanes, int segment) const;
-  void find_segment_hits(const SlicePacket& packet, int segment, Lanes& lanes, PacketView& view);
+  void find_segment_hits(const SlicePacket& packet, int segment, Lanes& lanes, std::span<PacketView> views);
   void fetch_window(const float* heights) const;
   template <class Visit>
   void for_each_crossing(const SlicePacket& packet, int segment, const Lanes& lanes, const Visit& visit);
@@ -117,23 +124,51 @@ class PathTraversal {
   LaneArray<uint8_t> next_hit_;
 };
 
-HWY_INLINE Lanes PathTraversal::start(const SlicePacket& packet) const {
+HWY_INLINE hn::Mask<F> traced(const SliceReceivers& receivers, size_t part) {
+  const uint32_t lanes = receivers.lanes >> part * kWidth;
+  const uint8_t bits[8] = {static_cast<uint8_t>(lanes), static_cast<uint8_t>(lanes >> 8)};
+  return hn::LoadMaskBits(kF, bits);
+}
+
+HWY_INLINE Vectors PathTraversal::tangent_slope(const SliceReceivers& receivers) const {
+  const glm::dvec2& direction = segments_.path().direction;
+  return along(receivers.tangent_slope_x, receivers.tangent_slope_y, direction.x, direction.y);
+}
+
+// Returns the horizon of receivers: nothing below their tangent planes is seen. kUnreachable: not traced.
+HWY_INLINE Vectors PathTraversal::above_tangent(const SliceReceivers& receivers,
+                                                const Vectors& horizon) const {
+  Vectors slope = tangent_slope(receivers);
+  for (size_t p = 0; p < kParts; ++p)
+    slope.part[p] = hn::IfThenElse(traced(receivers, p), hn::Max(slope.part[p], horizon.part[p]),
+                                   hn::Set(kF, kUnreachable));
+  return slope;
+}
+
+// Begins at the lowest of the receivers' tangent planes.
+HWY_INLINE Lanes PathTraversal::start(const SlicePacket& packet,
+                                      std::span<const SliceReceivers> receivers) const {
   const SlicePath& path = segments_.path();
   const auto corner = static_cast<double>(packet.corner);
   Lanes lanes;
   lanes.base = load(packet.base);
   lanes.rise = along(packet.plane_x, packet.plane_y, path.origin.x - corner, path.origin.y - corner);
-  lanes.tangent_slope =
-      along(packet.tangent_slope_x, packet.tangent_slope_y, path.direction.x, path.direction.y);
-  const V top = hn::Set(kF, pyramid_.top);
+  lanes.tangent_slope = tangent_slope(receivers.front());
+  const V top = hn::Set(kF, pyramid_.top), unreachable = hn::Set(kF, kUnreachable);
   for (size_t p = 0; p < kParts; ++p) {
     lanes.to_top.part[p] = hn::Sub(hn::Sub(top, lanes.base.part[p]), lanes.rise.part[p]);
-    const uint32_t traced = packet.lanes >> p * kWidth;
-    const uint8_t bits[8] = {static_cast<uint8_t>(traced), static_cast<uint8_t>(traced >> 8)};
-    V slope =
-        hn::IfThenElse(hn::LoadMaskBits(kF, bits), lanes.tangent_slope.part[p], hn::Set(kF, kUnreachable));
+    lanes.slope.part[p] =
+        hn::IfThenElse(traced(receivers.front(), p), lanes.tangent_slope.part[p], unreachable);
+  }
+  for (const SliceReceivers& others : receivers.subspan(1)) {
+    const Vectors tangent = tangent_slope(others);
+    for (size_t p = 0; p < kParts; ++p)
+      lanes.slope.part[p] =
+          hn::Min(lanes.slope.part[p], hn::IfThenElse(traced(others, p), tangent.part[p], unreachable));
+  }
+  for (size_t p = 0; p < kParts; ++p) {
+    V& slope = lanes.slope.part[p];
     if (blocks_below_ && options_.query != Query::kAllIntervals) slope = hn::Max(slope, hn::Zero(kF));
-    lanes.slope.part[p] = slope;
     if (options_.query == Query::kAllIntervals)
       lanes.above.part[p] = cosine_above(slope, lanes.tangent_slope.part[p]);
   }
@@ -153,13 +188,15 @@ HWY_INLINE bool PathTraversal::horizon_is_final(const Lanes& lanes, int segment)
   return all;
 }
 
-HWY_INLINE void PathTraversal::count_truncated(const Lanes& lanes, int segment, PacketView& view) const {
+HWY_INLINE void PathTraversal::count_truncated(const Lanes& lanes, int segment,
+                                               std::span<PacketView> views) const {
   const V near = hn::Set(kF, inverse_distance(segment));
   for (size_t p = 0; p < kParts; ++p) {
     uint8_t bits[8] = {};
     hn::StoreMaskBits(kF, hn::Gt(hn::Mul(lanes.to_top.part[p], near), lanes.slope.part[p]), bits);
-    for (size_t lane = 0; lane < kWidth; ++lane)
-      view.truncated[p * kWidth + lane] += (bits[lane / 8] >> (lane % 8)) & 1;
+    for (PacketView& view : views)
+      for (size_t lane = 0; lane < kWidth; ++lane)
+        view.truncated[p * kWidth + lane] += (bits[lane / 8] >> (lane % 8)) & 1;
   }
 }
 

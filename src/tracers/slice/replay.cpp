@@ -10,11 +10,12 @@
 namespace hemibake {
 
 std::vector<RayRecord> replay_slices(const Surface& surface, const SlicePaths& paths,
-                                     const SlicePacket& packet, const PacketView& view, size_t lane) {
+                                     const SlicePacket& packet, const SliceReceivers& receivers,
+                                     const PacketView& view, size_t lane) {
   const glm::dvec2 texel(packet.x + static_cast<int>(lane), packet.y);
-  const glm::dvec2 tangent_slopes(packet.tangent_slope_x[lane], packet.tangent_slope_y[lane]);
+  const glm::dvec2 tangent_slopes(receivers.tangent_slope_x[lane], receivers.tangent_slope_y[lane]);
   const double uniform_whole = view.hemisphere.uniform[lane];
-  const double cosine_whole = cosine_sum(packet, view.hemisphere, lane);
+  const double cosine_whole = cosine_sum(receivers, view.hemisphere, lane);
 
   std::vector<RayRecord> records;
   auto interval = view.intervals[lane].begin();

@@ -13,6 +13,7 @@ namespace hemibake {
 // the whole that form factors are a sample of; ground beyond the border is in none. view: traced with
 // Query::kAllIntervals.
 std::vector<RayRecord> replay_slices(const Surface& surface, const SlicePaths& paths,
-                                     const SlicePacket& packet, const PacketView& view, size_t lane);
+                                     const SlicePacket& packet, const SliceReceivers& receivers,
+                                     const PacketView& view, size_t lane);
 
 }  // namespace hemibake

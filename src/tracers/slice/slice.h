@@ -8,13 +8,17 @@
 // at equal steps of the cosine weight below the horizon, about eight to a whole slice of a texel and 1.5 to
 // one of a node. All weigh alike, so that rows are stored exactly (transport/links/form_factors.h).
 //
-// Corners of facets see the sky along twice as many azimuths as hits are sampled along. The blocked fraction
-// is distributed over the sampled hits. A receiver without any is traced again with denser sampling.
+// Nodes that stand at one place share their walks (surface/node_sites.h): the six facets around a texel, the two
+// beside an edge. A walk begins at the lowest of their tangent planes; each sees of its horizon what is above its
+// own. Starts are exactly there, so a facet beside the start blocks what is behind it by its slope.
+//
+// Corners of facets see the sky along twice as many azimuths as hits are sampled along, three of the six along
+// each. The blocked fraction is distributed over the sampled hits. A receiver without any is traced again with
+// denser sampling.
 //
 // Sixteen neighbours along x (aligned to multiples of sixteen) share their azimuths, rotated by a hash of
-// their place: the same crossings serve all of them, and their heights are neighbours in memory. Nodes take
-// each azimuth from another low-discrepancy point of the small copy of their facet. Starts are not lifted: a
-// row is the limit of Embree's for a lift of zero.
+// their place: the same crossings serve all of them, and their heights are neighbours in memory.
+// Starts are not lifted: a row is the limit of Embree's for a lift of zero.
 //
 // A wrapping map is followed until no horizon can rise by more than 10⁻⁴ (as a slope), and the rest counts as
 // sky: α and E₀/π are off by at most 10⁻⁴. Azimuths followed for 10⁴ times the map's longer side end there,

@@ -48,21 +48,37 @@ HWY_INLINE void PathTraversal::find_intervals(const SlicePacket& packet, uint32_
           });
 }
 
-// Finds the sampled hits of the slice below the horizon by following the path again.
-HWY_INLINE void PathTraversal::find_hits(const SlicePacket& packet, uint32_t azimuth, Lanes& lanes,
-                                         PacketView& view) {
-  const Vectors offset = load(packet.hit_offset), per_weight = load(packet.hits_per_weight);
-  const uint32_t sampled = azimuth / static_cast<uint32_t>(options_.hit_azimuth_stride);
-  const float shift = static_cast<float>(radical_inverse(2, sampled));
-  hits_.most = 0;
-  for (size_t p = 0; p < kParts; ++p) {
-    const V sum = hn::Add(offset.part[p], hn::Set(kF, shift));
-    place_hits(p, lanes.tangent_slope.part[p], lanes.slope.part[p], per_weight.part[p],
-               hn::Sub(sum, hn::Floor(sum)), hits_);
+// Places the hits of all receivers that are sampled along this azimuth, and returns whether there are any.
+HWY_INLINE bool PathTraversal::place_all_hits(std::span<const SliceReceivers> receivers, uint32_t azimuth,
+                                              const Vectors& horizon) {
+  const uint32_t stride = static_cast<uint32_t>(options_.hit_azimuth_stride);
+  const V shift = hn::Set(kF, static_cast<float>(radical_inverse(2, azimuth / stride)));
+  for (int& rows : hits_.rows) rows = 0;
+  for (uint32_t r = azimuth % stride; r < receivers.size(); r += stride) {
+    const Vectors offset = load(receivers[r].hit_offset), per_weight = load(receivers[r].hits_per_weight);
+    const Vectors tangent = tangent_slope(receivers[r]), slope = above_tangent(receivers[r], horizon);
+    for (size_t p = 0; p < kParts; ++p) {
+      const V sum = hn::Add(offset.part[p], shift);
+      const int first = hits_.rows[p];
+      place_hits(p, tangent.part[p], slope.part[p], per_weight.part[p], hn::Sub(sum, hn::Floor(sum)),
+                 static_cast<float>(r), hits_);
+      hits_.merge(p, first);
+    }
   }
-  if (hits_.most == 0) return;
+  int most = 0;
+  for (size_t p = 0; p < kParts; ++p) {
+    hn::Store(hn::Set(kF, kUnreachable), kF, hits_.slope[hits_.rows[p]] + p * kWidth);
+    most = std::max(most, hits_.rows[p]);
+  }
+  return most > 0;
+}
+
+// Finds the sampled hits of the slice below the horizon by following the path again.
+HWY_INLINE void PathTraversal::find_hits(const SlicePacket& packet, std::span<const SliceReceivers> receivers,
+                                         uint32_t azimuth, Lanes& lanes, std::span<PacketView> views) {
+  if (!place_all_hits(receivers, azimuth, lanes.slope)) return;
   next_hit_ = {};
-  for (size_t p = 0; p < kParts; ++p) lanes.slope.part[p] = hn::LoadU(kF, hits_.slope[0] + p * kWidth);
+  for (size_t p = 0; p < kParts; ++p) lanes.slope.part[p] = hn::Load(kF, hits_.slope[0] + p * kWidth);
   for (int segment = 0;;) {
     if (!reaches_map(packet, segment) || segment > last_segment_) return;
     if (segment > 0) {
@@ -71,7 +87,7 @@ HWY_INLINE void PathTraversal::find_hits(const SlicePacket& packet, uint32_t azi
       segment += skipped;
       if (skipped > 0) continue;
     }
-    find_segment_hits(packet, segment, lanes, view);
+    find_segment_hits(packet, segment, lanes, views);
     ++segment;
   }
 }
@@ -91,12 +107,13 @@ HWY_INLINE bool PathTraversal::hits_are_final(const Lanes& lanes, int segment) c
 }
 
 HWY_INLINE void PathTraversal::find_segment_hits(const SlicePacket& packet, int segment, Lanes& lanes,
-                                                 PacketView& view) {
+                                                 std::span<PacketView> views) {
   const SlicePath& path = segments_.path();
   const V near = broadcast(segment * path.step), zero = hn::Zero(kF), one = hn::Set(kF, 1.0f);
   const glm::vec2 begin(segment_begin(path, segment)), direction(path.direction);
   const glm::ivec2 window = window_in_map(packet, segments_.corner(segment, 0));
   const float* heights = pyramid_.heights.at(window.x, window.y);
+  const V least = broadcast(segment == 0 ? options_.least_distance : 0);
   for_each_crossing(
       packet, segment, lanes,
       [&](size_t p, V slope, const glm::ivec2& corner, const Crossing& crossing, const FacetBefore& facet)
@@ -113,7 +130,8 @@ HWY_INLINE void PathTraversal::find_segment_hits(const SlicePacket& packet, int 
               const V next = lanes.slope.part[p];
               const V above = hn::Max(zero, mul_sub(next, near_distance, near_height));
               const V below = hn::Max(hn::Set(kF, 1e-30f), neg_mul_add(next, far_distance, far_height));
-              const V along = mul_add(hn::Div(above, hn::Add(above, below)), hn::Sub(left, entered), entered);
+              const V exact = mul_add(hn::Div(above, hn::Add(above, below)), hn::Sub(left, entered), entered);
+              const V along = hn::Max(exact, hn::Min(left, least));
               const V distance = hn::Mul(hn::Add(near, along), hn::Sqrt(mul_add(next, next, one)));
               alignas(64) float slopes[kWidth], alongs[kWidth], distances[kWidth];
               hn::Store(next, kF, slopes);
@@ -121,10 +139,11 @@ HWY_INLINE void PathTraversal::find_segment_hits(const SlicePacket& packet, int 
               hn::Store(distance, kF, distances);
               for_each_lane(hit, [&](size_t l) {
                 const size_t lane = p * kWidth + l;
+                const auto receiver = static_cast<size_t>(hits_.receiver[next_hit_[lane]][lane]);
                 const size_t next_hit = ++next_hit_[lane];
                 const glm::vec2 in_cell = begin + alongs[l] * direction - glm::vec2(facet.column, facet.row);
                 const glm::vec2 uv = !facet.half ? in_cell : 1.0f - in_cell;
-                view.hits[lane].push_back(
+                views[receiver].hits[lane].push_back(
                     {facet_at(corner, facet, static_cast<int>(lane)), 1, uv.x, uv.y, distances[l]});
                 slopes[l] = hits_.slope[next_hit][lane];
               });
@@ -150,43 +169,49 @@ HWY_INLINE uint32_t PathTraversal::facet_at(glm::ivec2 corner, const FacetBefore
   return 2 * cell + (facet.half ? 1 : 0);
 }
 
-// Adds the unblocked hemisphere of a packet along all azimuths of its rotation.
-void add_hemisphere(const SlicePaths& paths, const SlicePacket& packet, SliceSums& hemisphere) {
+// Adds the unblocked hemisphere of receivers along all azimuths of their packet's rotation.
+void add_hemisphere(const SlicePaths& paths, int rotation, const SliceReceivers& receivers,
+                    SliceSums& hemisphere) {
   for (int azimuth = 0; azimuth < paths.azimuths; ++azimuth) {
-    const glm::dvec2& direction = paths.paths[paths.path_index(packet.rotation, azimuth)].direction;
-    add_sky(along(packet.tangent_slope_x, packet.tangent_slope_y, direction.x, direction.y), direction,
+    const glm::dvec2& direction = paths.paths[paths.path_index(rotation, azimuth)].direction;
+    add_sky(along(receivers.tangent_slope_x, receivers.tangent_slope_y, direction.x, direction.y), direction,
             hemisphere);
   }
 }
 
 template <Query kQuery>
 void traverse_all(const HeightPyramid& pyramid, const SlicePaths& paths, const TraversalOptions& options,
-                  std::span<const SlicePacket> packets, std::span<PacketView> views) {
+                  const SlicePackets& given, std::span<PacketView> views) {
+  const std::span<const SlicePacket> packets = given.packets;
   // Path after path, so that its crossings and heights stay in the caches.
   std::vector<size_t> order(packets.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](size_t a, size_t b) { return packets[a].rotation < packets[b].rotation; });
-  for (size_t i = 0; i < packets.size(); ++i) add_hemisphere(paths, packets[i], views[i].hemisphere);
+  for (const SlicePacket& packet : packets)
+    for (uint32_t r = packet.first_receiver; r < packet.first_receiver + packet.receivers; ++r)
+      add_hemisphere(paths, packet.rotation, given.receivers[r], views[r].hemisphere);
   PathTraversal traversal(pyramid, paths, options);
   for (int azimuth = 0; azimuth < paths.azimuths; ++azimuth) {
     int rotation = -1;
     for (const size_t index : order) {
-      if (packets[index].rotation != rotation) {
-        rotation = packets[index].rotation;
+      const SlicePacket& packet = packets[index];
+      if (packet.rotation != rotation) {
+        rotation = packet.rotation;
         traversal.begin_path(paths.path_index(rotation, azimuth));
       }
-      if (kQuery == Query::kSampledHits && azimuth % options.hit_azimuth_stride != 0) {
-        traversal.trace<Query::kHorizon>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
-      } else {
-        traversal.trace<kQuery>(packets[index], static_cast<uint32_t>(azimuth), views[index]);
-      }
+      // Intervals begin at the tangent plane of one receiver.
+      const uint32_t step = kQuery == Query::kAllIntervals ? 1 : packet.receivers;
+      const uint32_t end = packet.first_receiver + packet.receivers;
+      for (uint32_t first = packet.first_receiver; first < end; first += step)
+        traversal.trace<kQuery>(packet, given.receivers.subspan(first, step), static_cast<uint32_t>(azimuth),
+                                views.subspan(first, step));
     }
   }
 }
 
 void traverse_packets(const HeightPyramid& pyramid, const SlicePaths& paths, const TraversalOptions& options,
-                      std::span<const SlicePacket> packets, std::span<PacketView> views) {
+                      const SlicePackets& packets, std::span<PacketView> views) {
   switch (options.query) {
     case Query::kHorizon:
       return traverse_all<Query::kHorizon>(pyramid, paths, options, packets, views);
@@ -207,7 +232,7 @@ namespace hemibake {
 HWY_EXPORT(traverse_packets);
 
 void traverse_packets(const HeightPyramid& pyramid, const SlicePaths& paths, const TraversalOptions& options,
-                      std::span<const SlicePacket> packets, std::span<PacketView> views) {
+                      const SlicePackets& packets, std::span<PacketView> views) {
   HWY_DYNAMIC_DISPATCH(traverse_packets)(pyramid, paths, options, packets, views);
 }
 

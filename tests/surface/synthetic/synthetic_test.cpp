@@ -178,7 +178,7 @@ TEST(Synthetic, BricksFillEveryBinOfAmbientOcclusion) {
   const SyntheticMap map = synthesize(SyntheticKind::kBricks, size(512, 512));
   const Surface surface = make_surface(map.heights, 1, map.recommended_amplitude_m, Edge::kWrap);
   const auto tracer = make_embree_tracer(surface, {.rays = 128});
-  const LightTransport seen = trace_surface(*tracer, false);
+  const LightTransport seen = trace_surface(*tracer, KeptLinks::kNone);
   int counts[100] = {};
   for (const float alpha : seen.visible_fraction.values)
     ++counts[std::min(99, static_cast<int>(100 * alpha))];

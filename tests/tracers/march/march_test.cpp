@@ -286,8 +286,8 @@ TEST(March, AgreesWithEmbreeOnASmoothMap) {
   march.lift_percent = 0.1;
   RayOptions rays;
   rays.patch_kind = PatchKind::kTexels;
-  const LightTransport marched = trace_surface(*make_march_tracer(surface, march), false);
-  const LightTransport traced = trace_surface(*make_embree_tracer(surface, rays), false);
+  const LightTransport marched = trace_surface(*make_march_tracer(surface, march), KeptLinks::kNone);
+  const LightTransport traced = trace_surface(*make_embree_tracer(surface, rays), KeptLinks::kNone);
   const auto& ao = marched.visible_fraction.values;
   const auto& direct = marched.direct_over_pi.values;
   // Less than one ray of the 256 a texel, and a quarter of one in the mean. What differs grazes slopes, and

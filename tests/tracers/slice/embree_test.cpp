@@ -32,7 +32,8 @@ LightTransport with_embree(const Surface& surface, bool with_links, double max_d
   options.rays = kRays;
   options.max_distance_m = max_distance_m;
   options.patch_kind = patches;
-  return trace_surface(*make_embree_tracer(surface, options), with_links);
+  return trace_surface(*make_embree_tracer(surface, options),
+                       with_links ? KeptLinks::kAll : KeptLinks::kNone);
 }
 
 LightTransport with_slices(const Surface& surface, bool with_links, double max_distance_m,
@@ -42,7 +43,7 @@ LightTransport with_slices(const Surface& surface, bool with_links, double max_d
   options.lift_texels = lift_of_embree(surface);
   options.max_distance_m = max_distance_m;
   options.patch_kind = patches;
-  return trace_surface(*make_slice_tracer(surface, options), with_links);
+  return trace_surface(*make_slice_tracer(surface, options), with_links ? KeptLinks::kAll : KeptLinks::kNone);
 }
 
 // Twice the error of a low-discrepancy set, N^−¾ with a constant of 2 at most (measured rms: 0.45).

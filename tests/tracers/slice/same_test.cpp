@@ -19,7 +19,7 @@ SliceOptions azimuths(int count) {
 }
 
 LightTransport trace_all(const Surface& surface, const SliceOptions& options, bool with_links) {
-  return trace_surface(*make_slice_tracer(surface, options), with_links);
+  return trace_surface(*make_slice_tracer(surface, options), with_links ? KeptLinks::kAll : KeptLinks::kNone);
 }
 
 // One binary serves every x86-64 machine: each set of vector instructions that this one has gives the same
@@ -68,7 +68,9 @@ TEST(SliceRobustness, NodesThatSeeOnePillarLinkToIt) {
 TEST(SliceRobustness, SeedsAreIndependent) {
   const Surface surface = white_noise_surface(48, 40, 0.1);
   const auto tracer = make_slice_tracer(surface, azimuths(16));
-  const auto trace_again = [&](uint64_t seed) { return trace_surface(*tracer->reseeded(seed), true); };
+  const auto trace_again = [&](uint64_t seed) {
+    return trace_surface(*tracer->reseeded(seed), KeptLinks::kAll);
+  };
   const LightTransport truth = trace_all(surface, azimuths(512), true), first = trace_again(1),
                        second = trace_again(2);
   // The correlation of two independent errors of n values is 0 ± 1/√n; packets of 16 share their azimuths.

@@ -30,7 +30,7 @@ Row trace(const Surface& surface, uint32_t texel, const SliceOptions& options) {
 }
 
 LightTransport trace_all(const Surface& surface, const SliceOptions& options, bool with_links) {
-  return trace_surface(*make_slice_tracer(surface, options), with_links);
+  return trace_surface(*make_slice_tracer(surface, options), with_links ? KeptLinks::kAll : KeptLinks::kNone);
 }
 
 // A canyon floor between walls whose upper edges are d₁ and d₂ away: U = 1 − (a₁ + a₂)/π, C = (cos a₁ + cos
@@ -75,7 +75,7 @@ TEST(SliceTracer, GrooveWallMeans) {
     const double psi = degrees * kPi / 180;
     const Surface surface = synthetic_surface(SyntheticKind::kGroove, 128, 16, {}, psi);
     const auto tracer = make_slice_tracer(surface, azimuths(128));
-    const LightTransport seen = trace_surface(*tracer, true);
+    const LightTransport seen = trace_surface(*tracer, KeptLinks::kAll);
     std::vector<double> light(seen.patch_direct_over_pi.begin(), seen.patch_direct_over_pi.end()),
         next(light.size());
     const std::vector<double> expected = groove_wall_means(psi, 4);

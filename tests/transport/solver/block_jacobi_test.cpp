@@ -77,7 +77,7 @@ TEST(BlockJacobi, SameBytesAtAnyThreadCount) {
   const Surface surface = white_noise_surface(24, 24, 0.5);
   SliceOptions options;
   options.azimuths = 8;
-  const LightTransport transport = trace_surface(*make_slice_tracer(surface, options), true);
+  const LightTransport transport = trace_surface(*make_slice_tracer(surface, options), KeptLinks::kAll);
   set_thread_count(1);
   const BlockJacobi one = make_block_jacobi(transport.patch_form_factors, {});
   set_thread_count(2);
