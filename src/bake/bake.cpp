@@ -132,8 +132,7 @@ double least_bake_bytes(int width, int height, const MapSettings& map, const Bak
   const auto texels = static_cast<uint32_t>(width) * static_cast<uint32_t>(height);
   const int border = map.edge == Edge::kWrap ? 0 : 1;
   const uint32_t facets = 2 * static_cast<uint32_t>(width - border) * static_cast<uint32_t>(height - border);
-  const size_t patches =
-      *settings.patch_kind == PatchKind::kTexels ? texels : size_t{facets} * kCoarseNodes;
+  const size_t patches = *settings.patch_kind == PatchKind::kTexels ? texels : size_t{facets} * kCoarseNodes;
   PlanOptions options = plan_options(texels, facets, settings);
   // Open holes may turn slices into rays (resolve_for_holes).
   if (map.holes == Holes::kOpen && settings.tracer_is_default)

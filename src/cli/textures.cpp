@@ -141,9 +141,8 @@ LoadedMap load_map_to_bake(TexturesOptions& options, Again again, const std::str
   try {
     resolve_bake_of_map(options, invocation);
     const fs::path made = texture_paths(options.textures, options.folder, name)[0];
-    const MemoryScope memory(options.bake.memory_gib, options.textures.wants_bake()
-                                                          ? need_of_bake(options, again, made)
-                                                          : MapNeed());
+    const MemoryScope memory(options.bake.memory_gib,
+                             options.textures.wants_bake() ? need_of_bake(options, again, made) : MapNeed());
     return load_map(options.map, options.bake.normal_length);
   } catch (const SettingError& error) {
     throw InputError(with_names_of_textures(error.with_prefix("--")));

@@ -46,8 +46,8 @@ std::string memory_fault(double needed_bytes, std::optional<double> allowed) {
         "{:.2f} GiB, expected at most the {} GiB of {{memory}}: allow more, or take smaller input", needed,
         *allowed);
   const double machine = std::floor(static_cast<double>(machine_memory_bytes()) / kGib * 100) / 100;
-  return fmt::format("{:.2f} GiB, expected at most the {:.2f} GiB of this machine: take smaller input", needed,
-                     machine);
+  return fmt::format("{:.2f} GiB, expected at most the {:.2f} GiB of this machine: take smaller input",
+                     needed, machine);
 }
 
 void require_memory(double bytes, const std::string& what) {

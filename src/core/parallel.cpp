@@ -58,8 +58,8 @@ struct FlushedDenormals {
   unsigned saved = _mm_getcsr();
 };
 
-// Tells ThreadSanitizer what oneTBB orders, which it cannot see in a library that is not built with it: pieces
-// begin after what came before the loop, and what comes after the loop begins after all pieces.
+// Tells ThreadSanitizer what oneTBB orders, which it cannot see in a library that is not built with it:
+// pieces begin after what came before the loop, and what comes after the loop begins after all pieces.
 struct LoopOrder {
 #ifdef HEMIBAKE_TSAN
   LoopOrder() { __tsan_release(&begun); }

@@ -91,9 +91,9 @@ TEST(Bake, RefusesWhatMemoryDoesNotHold) {
     FAIL() << "expected a refusal";
   } catch (const SettingError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("at most the 1e-06 GiB of memory: "));
-    EXPECT_THAT(
-        error.in_file("map.png").with_prefix("--"),
-        testing::AllOf(testing::StartsWith("map.png: the bake needs"), testing::HasSubstr("GiB of --memory: ")));
+    EXPECT_THAT(error.in_file("map.png").with_prefix("--"),
+                testing::AllOf(testing::StartsWith("map.png: the bake needs"),
+                               testing::HasSubstr("GiB of --memory: ")));
   }
   settings.limit_memory = false;
   EXPECT_NO_THROW(bake(noise_map(8), settings, {}));

@@ -8,13 +8,13 @@
 // at equal steps of the cosine weight below the horizon, about eight to a whole slice of a texel and 1.5 to
 // one of a node. All weigh alike, so that rows are stored exactly (transport/links/form_factors.h).
 //
-// Nodes that stand at one place share their walks (surface/node_sites.h): the six facets around a texel, the two
-// beside an edge. A walk begins at the lowest of their tangent planes; each sees of its horizon what is above its
-// own. Starts are exactly there, so a facet beside the start blocks what is behind it by its slope.
+// Nodes that stand at one place share their walks (surface/node_sites.h): the six facets around a texel, the
+// two beside an edge. A walk begins at the lowest of their tangent planes; each sees of its horizon what is
+// above its own. Starts are exactly there, so a facet beside the start blocks what is behind it by its slope.
 //
-// Corners of facets see the sky along twice as many azimuths as hits are sampled along, three of the six along
-// each. The blocked fraction is distributed over the sampled hits. A receiver without any is traced again with
-// denser sampling.
+// Corners of facets see the sky along twice as many azimuths as hits are sampled along, three of the six
+// along each. The blocked fraction is distributed over the sampled hits. A receiver without any is traced
+// again with denser sampling.
 //
 // Sixteen neighbours along x (aligned to multiples of sixteen) share their azimuths, rotated by a hash of
 // their place: the same crossings serve all of them, and their heights are neighbours in memory.
