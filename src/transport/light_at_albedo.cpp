@@ -1,11 +1,13 @@
 #include "transport/light_at_albedo.h"
 
+#include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <utility>
 
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "transport/links/form_factors.h"
-#include "transport/solver/orthomin.h"
 
 namespace hemibake {
 namespace {
@@ -14,6 +16,12 @@ constexpr size_t kGrain = 16384;
 // Largest error of a texel, over π.
 constexpr double kTolerance = 1e-4;
 constexpr uint64_t kMostSteps = 2000;
+
+void keep_largest(std::atomic<double>& largest, double value) {
+  double known = largest.load();
+  while (value > known && !largest.compare_exchange_weak(known, value)) {
+  }
+}
 
 }  // namespace
 
@@ -27,23 +35,39 @@ void LightAtAlbedo::add(std::span<const double> bounce) {
   });
 }
 
+// Chebyshev's semi-iterative method (Golub and Varga, Numerische Mathematik 3, 1961) for x = direct + ρ W x:
+// one more bounce of x, overshot away from the x before. The eigenvalues of ρ W lie within ±ρ.
 Grid<float> LightAtAlbedo::finish(const LightTransport& transport, const std::vector<double>& last) {
   Progress progress("lighting at the albedo of the bounce map", kMostSteps, "step");
-  // What one more bounce adds is the residual of the sum.
-  std::vector<double> more(last.size());
-  multiply(transport.bounce_matrix(), last, more);
-  for (double& light : more) light *= power_ * albedo_;
-  const std::vector<float> everywhere(last.size(), static_cast<float>(albedo_));
-  Orthomin solver(transport.bounce_matrix(), everywhere, std::move(sum_), std::move(more));
+  const FormFactorMatrix& matrix = transport.bounce_matrix();
+  const std::vector<float>& sky = transport.patch_direct();
+  std::vector<double> before = std::move(sum_), now(last.size()), bounced(last.size());
+  multiply(matrix, last, bounced);
+  parallel_for(now.size(), kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) now[i] = before[i] + power_ * albedo_ * bounced[i];
+  });
+  double overshoot = 1 / (1 - albedo_ * albedo_ / 2), residual = 1;
   // Rows sum to at most 1, so an error is at most the residual over 1 − ρ.
-  for (uint64_t made = 0; made < kMostSteps && solver.largest_residual() > kTolerance * (1 - albedo_);
-       ++made) {
-    if (!solver.step()) break;
+  for (uint64_t made = 0; made < kMostSteps && residual > kTolerance * (1 - albedo_); ++made) {
+    multiply(matrix, now, bounced);
+    std::atomic<double> largest = 0;
+    parallel_for(now.size(), kGrain, [&](size_t begin, size_t end) {
+      double worst = 0;
+      for (size_t i = begin; i < end; ++i) {
+        const double next = static_cast<double>(sky[i]) + albedo_ * bounced[i];
+        worst = std::max(worst, std::abs(next - now[i]));
+        before[i] += overshoot * (next - before[i]);
+      }
+      keep_largest(largest, worst);
+    });
+    residual = largest;
+    now.swap(before);
+    overshoot = 1 / (1 - albedo_ * albedo_ * overshoot / 4);
     progress.advance(1);
   }
   const Grid<float>& direct = transport.direct_over_pi;
   std::vector<double> gathered(direct.size());
-  multiply(transport.final_gather, solver.light(), gathered);
+  multiply(transport.final_gather, now, gathered);
   Grid<float> light(direct.width, direct.height);
   for (size_t i = 0; i < light.size(); ++i)
     light[i] = static_cast<float>(static_cast<double>(direct[i]) + albedo_ * gathered[i]);
