@@ -15,7 +15,7 @@ namespace {
 constexpr size_t kGrain = 16384;
 // Largest error of a texel, over π.
 constexpr double kTolerance = 1e-4;
-constexpr uint64_t kMostSteps = 2000;
+constexpr uint64_t kMostSteps = 2000, kStepsBetweenTests = 8;
 
 void keep_largest(std::atomic<double>& largest, double value) {
   double known = largest.load();
@@ -36,7 +36,9 @@ void LightAtAlbedo::add(std::span<const double> bounce) {
 }
 
 // Chebyshev's semi-iterative method (Golub and Varga, Numerische Mathematik 3, 1961) for x = direct + ρ W x:
-// one more bounce of x, overshot away from the x before. The eigenvalues of ρ W lie within ±ρ.
+// one more bounce of x, overshot away from the x before, for eigenvalues of ρ W within ±ρ. Noise makes some
+// of them complex; where they are far off the axis the residual does not fall, and bounces without
+// overshooting go on.
 Grid<float> LightAtAlbedo::finish(const LightTransport& transport, const std::vector<double>& last) {
   Progress progress("lighting at the albedo of the bounce map", kMostSteps, "step");
   const FormFactorMatrix& matrix = transport.bounce_matrix();
@@ -46,7 +48,8 @@ Grid<float> LightAtAlbedo::finish(const LightTransport& transport, const std::ve
   parallel_for(now.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) now[i] = before[i] + power_ * albedo_ * bounced[i];
   });
-  double overshoot = 1 / (1 - albedo_ * albedo_ / 2), residual = 1;
+  double overshoot = 1 / (1 - albedo_ * albedo_ / 2), residual = 1, earlier = HUGE_VAL;
+  bool overshoots = true;
   // Rows sum to at most 1, so an error is at most the residual over 1 − ρ.
   for (uint64_t made = 0; made < kMostSteps && residual > kTolerance * (1 - albedo_); ++made) {
     multiply(matrix, now, bounced);
@@ -62,7 +65,11 @@ Grid<float> LightAtAlbedo::finish(const LightTransport& transport, const std::ve
     });
     residual = largest;
     now.swap(before);
-    overshoot = 1 / (1 - albedo_ * albedo_ * overshoot / 4);
+    if (made % kStepsBetweenTests == 0) {
+      overshoots = overshoots && residual < earlier / 2;
+      earlier = residual;
+    }
+    overshoot = overshoots ? 1 / (1 - albedo_ * albedo_ * overshoot / 4) : 1;
     progress.advance(1);
   }
   const Grid<float>& direct = transport.direct_over_pi;
