@@ -13,8 +13,8 @@
 namespace hemibake {
 namespace {
 
-// Neighbouring patches are the same node of one run: more groups, to know how many facets are cut finely.
-constexpr uint32_t kTexelGroups = 64, kPatchGroups = 512, kGroupRows = 16;
+// Receivers are traced as tracers answer them together: groups of texels, whole runs of patches.
+constexpr uint32_t kTexelGroups = 64, kTexelsOfGroup = 16, kPatchGroups = 96;
 constexpr uint64_t kPilotStream = 100;
 // Seconds a link takes in a bounce: measured 1–2 ns where the light under way fits the cache.
 constexpr double kSecondsPerLink = 2e-9;
@@ -27,33 +27,34 @@ struct Pilot {
   double cpu_seconds = 0;
 };
 
-// Groups of kGroupRows neighbours, which a tracer may answer together, spread over [0, count), traced on this
-// thread. trace_rows(first, rows, counts) as Tracer::trace_texels.
+// Neighbouring rows.
+struct RowGroup {
+  uint32_t first, count;
+};
+
+// Traces groups of rows on this thread. columns: of the matrix. trace_rows(first, rows, counts) as
+// Tracer::trace_texels.
 template <class TraceRows>
-Pilot trace_pilot(uint32_t count, uint32_t columns, uint32_t most_groups, const TraceRows& trace_rows) {
+Pilot trace_pilot(std::span<const RowGroup> groups, uint32_t columns, const TraceRows& trace_rows) {
   Pilot pilot;
-  TracerCounts counts;
-  std::vector<Row> rows(std::min(count, kGroupRows));
-  const uint32_t groups = (count + kGroupRows - 1) / kGroupRows;
-  std::vector<uint32_t> firsts = stratified_sample(groups, most_groups, kPilotStream);
-  for (uint32_t& first : firsts) {
-    first *= kGroupRows;
-    pilot.rows += std::min(kGroupRows, count - first);
-  }
+  for (const RowGroup& group : groups) pilot.rows += group.count;
   FormFactorMatrix links = make_form_factors(pilot.rows, columns);
+  TracerCounts counts;
+  std::vector<Row> rows;
   uint32_t next_row = 0;
   uint64_t traced_links = 0;
   const double start = process_cpu_seconds();
-  for (const uint32_t first : firsts) {
-    const std::span<Row> group(rows.data(), std::min(kGroupRows, count - first));
-    trace_rows(first, group, counts);
-    uint64_t make_block_jacobi = 0;
-    for (const Row& row : group) {
+  for (const RowGroup& group : groups) {
+    rows.resize(std::max<size_t>(rows.size(), group.count));
+    const std::span<Row> of_group(rows.data(), group.count);
+    trace_rows(group.first, of_group, counts);
+    uint64_t links_of_group = 0;
+    for (const Row& row : of_group) {
       append_row(links.blocks[next_row++ / FormFactorMatrix::kRowsPerBlock], row.links);
-      make_block_jacobi += row.links.size();
+      links_of_group += row.links.size();
     }
-    traced_links += make_block_jacobi;
-    pilot.links.add(static_cast<double>(make_block_jacobi) / static_cast<double>(group.size()));
+    traced_links += links_of_group;
+    pilot.links.add(static_cast<double>(links_of_group) / group.count);
   }
   finish_blocks(links);
   if (traced_links > 0)
@@ -61,6 +62,27 @@ Pilot trace_pilot(uint32_t count, uint32_t columns, uint32_t most_groups, const 
   pilot.cpu_seconds = process_cpu_seconds() - start;
   pilot.rays = counts.rays;
   return pilot;
+}
+
+// Returns groups spread over `count` texels.
+std::vector<RowGroup> texel_groups(uint32_t count) {
+  std::vector<RowGroup> groups;
+  for (const uint32_t group :
+       stratified_sample((count + kTexelsOfGroup - 1) / kTexelsOfGroup, kTexelGroups, kPilotStream)) {
+    const uint32_t first = group * kTexelsOfGroup;
+    groups.push_back({first, std::min(kTexelsOfGroup, count - first)});
+  }
+  return groups;
+}
+
+// Returns runs spread over the patches.
+std::vector<RowGroup> patch_groups(const PatchSet& patches) {
+  std::vector<RowGroup> groups;
+  const auto runs = static_cast<uint32_t>(patches.first.size() - 1);
+  for (const uint32_t run : stratified_sample(runs, kPatchGroups, kPilotStream))
+    if (const uint32_t count = patches.first[run + 1] - patches.first[run]; count > 0)
+      groups.push_back({patches.first[run], count});
+  return groups;
 }
 
 void add_pilot(const Pilot& pilot, uint32_t count, BakePlan& plan) {
@@ -103,14 +125,14 @@ BakePlan plan_bake(const Surface& surface, const Tracer& tracer, const PlanOptio
   const auto of_texels = [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
     tracer.trace_texels(first, options.with_links, rows, counts);
   };
-  add_pilot(trace_pilot(surface.texel_count(), tracer.patch_set().count, kTexelGroups, of_texels),
+  const PatchSet& patch_set = tracer.patch_set();
+  add_pilot(trace_pilot(texel_groups(surface.texel_count()), patch_set.count, of_texels),
             surface.texel_count(), plan);
-  if (options.with_links && options.patch_kind == PatchKind::kFacets) {
+  if (options.with_links && options.patch_kind == PatchKind::kFacets && patch_set.count > 0) {
     const auto of_patches = [&](uint32_t first, std::span<Row> rows, TracerCounts& counts) {
       tracer.trace_patches(first, true, rows, counts);
     };
-    add_pilot(trace_pilot(tracer.patch_set().count, tracer.patch_set().count, kPatchGroups, of_patches),
-              tracer.patch_set().count, plan);
+    add_pilot(trace_pilot(patch_groups(patch_set), patch_set.count, of_patches), patch_set.count, plan);
   }
   if (!options.with_links) plan.link_bytes = 0;
   plan.bounce_cpu_seconds = static_cast<double>(plan.links) * options.bounces * kSecondsPerLink;
