@@ -279,7 +279,7 @@ std::vector<Field> bake_fields(BakeSettings& s) {
           when([&s] { return s.makes_bounce_plane(); },
                recorded("bounce-albedo", "bounce_albedo", "Light", number(s.bounce_albedo, 0.5, 0.99),
                         "albedo of the plane 'bounce': all light at this albedo, the second texture of "
-                        "the bounce map"))),
+                        "the bounce map; made with two bounces or more, or --links"))),
 
       when(has_target,
            recorded("target-error", "target_error", "Tracing", number(s.target_error, 1e-4, 0.5),

@@ -10,14 +10,16 @@
 namespace hemibake {
 namespace {
 
-// Only what holds terrain in files: none that asks a server, and few to register.
+// Only what holds terrain in files: none that asks a server, and few to register. Not PCRaster: its reader
+// goes on for minutes over damaged tables.
 constexpr const char* kDriverFunctions[] = {
-    "GDALRegister_VRT",     "GDALRegister_GTiff",          "GDALRegister_HFA",    "GDALRegister_AIGrid",
-    "GDALRegister_AAIGrid", "GDALRegister_GRASSASCIIGrid", "GDALRegister_SDTS",   "GDALRegister_DTED",
-    "GDALRegister_SRTMHGT", "GDALRegister_Terragen",       "GDALRegister_netCDF", "GDALRegister_USGSDEM",
-    "GDALRegister_GSAG",    "GDALRegister_GSBG",           "GDALRegister_GS7BG",  "GDALRegister_PCRaster",
-    "GDALRegister_IDRISI",  "GDALRegister_SAGA",           "GDALRegister_BT",     "GDALRegister_XYZ",
-    "GDALRegister_EHdr",    "GDALRegister_ENVI",
+    "GDALRegister_VRT",      "GDALRegister_GTiff",   "GDALRegister_HFA",
+    "GDALRegister_AIGrid",   "GDALRegister_AAIGrid", "GDALRegister_GRASSASCIIGrid",
+    "GDALRegister_SDTS",     "GDALRegister_DTED",    "GDALRegister_SRTMHGT",
+    "GDALRegister_Terragen", "GDALRegister_netCDF",  "GDALRegister_USGSDEM",
+    "GDALRegister_GSAG",     "GDALRegister_GSBG",    "GDALRegister_GS7BG",
+    "GDALRegister_IDRISI",   "GDALRegister_SAGA",    "GDALRegister_BT",
+    "GDALRegister_XYZ",      "GDALRegister_EHdr",    "GDALRegister_ENVI",
 };
 
 constexpr const char* kOptions[][2] = {

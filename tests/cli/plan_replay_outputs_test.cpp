@@ -118,7 +118,7 @@ TEST_F(DefaultTracer, IsSlicesUnlessRaysAreAskedFor) {
 class Outputs : public CliTest {
  protected:
   std::set<std::string> channels_of(const std::string& options) const {
-    run_well("bake map.exr -o bake.exr --rays 4 --bounces 1 " + options);
+    run_well("bake map.exr -o bake.exr --rays 4 --bounces 2 " + options);
     const std::vector<std::string> channels = read_image_header(folder_ / "bake.exr").channels;
     return {channels.begin(), channels.end()};
   }
@@ -126,7 +126,7 @@ class Outputs : public CliTest {
 
 TEST_F(Outputs, AreExactlyThoseAskedFor) {
   write_map("map.exr", SyntheticKind::kShapes, 16, 16);
-  const std::set<std::string> light = {"visibility", "irradiance.00", "irradiance.01",
+  const std::set<std::string> light = {"visibility", "irradiance.00", "irradiance.01", "irradiance.02",
                                        "total",      "residual",      "bounce"};
   using Names = std::set<std::string>;
   EXPECT_EQ(channels_of("--outputs ao"), Names({"ao", "visibility"}));
@@ -137,6 +137,11 @@ TEST_F(Outputs, AreExactlyThoseAskedFor) {
   all.insert({"ao", "bent.X", "bent.Y", "bent.Z", "normal.X", "normal.Y", "normal.Z"});
   EXPECT_EQ(channels_of(""), all);
   EXPECT_EQ(channels_of("--outputs normal,ao,bent,irradiance,ao"), all);
+  // One bounce links no patches: the bounce map, all bounces at its albedo, would.
+  run_well("bake map.exr -o one.exr --rays 4 --bounces 1 --outputs irradiance");
+  const std::vector<std::string> one = read_image_header(folder_ / "one.exr").channels;
+  EXPECT_EQ(std::set<std::string>(one.begin(), one.end()),
+            Names({"visibility", "irradiance.00", "irradiance.01", "total", "residual"}));
 }
 
 TEST_F(Outputs, LinksOnlyWhereTheyAreNeeded) {
