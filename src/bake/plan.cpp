@@ -78,10 +78,10 @@ std::vector<RowGroup> texel_groups(uint32_t count) {
 // Returns runs spread over the patches.
 std::vector<RowGroup> patch_groups(const PatchSet& patches) {
   std::vector<RowGroup> groups;
-  const auto runs = static_cast<uint32_t>(patches.first.size() - 1);
+  const auto runs = static_cast<uint32_t>(patches.runs.size() - 1);
   for (const uint32_t run : stratified_sample(runs, kPatchGroups, kPilotStream))
-    if (const uint32_t count = patches.first[run + 1] - patches.first[run]; count > 0)
-      groups.push_back({patches.first[run], count});
+    if (const uint32_t count = patches.runs[run + 1].first - patches.runs[run].first; count > 0)
+      groups.push_back({patches.runs[run].first, count});
   return groups;
 }
 

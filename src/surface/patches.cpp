@@ -71,6 +71,20 @@ constexpr std::array<std::array<uint8_t, 4>, kSlots + 1> make_fine_before() {
 }
 constexpr std::array<std::array<uint8_t, 4>, kSlots + 1> kFineBefore = make_fine_before();
 
+constexpr std::array<FineFacet, kSlots> make_fine_facet_of() {
+  std::array<FineFacet, kSlots> facets{};
+  for (size_t slot = 0; slot < kSlots; ++slot) facets[slot] = fine_facet(kNodeSites.slots[slot]);
+  return facets;
+}
+constexpr std::array<FineFacet, kSlots> kFineFacetOf = make_fine_facet_of();
+
+// Returns the patches of the slots from kCoarseSlots on before a slot of such a run.
+uint32_t fine_patches_before(const std::array<uint8_t, 4>& fine_count, uint32_t slot) {
+  const std::array<uint8_t, 4>& before = kFineBefore[slot];
+  return uint32_t{before[0]} * fine_count[0] + uint32_t{before[1]} * fine_count[1] +
+         uint32_t{before[2]} * fine_count[2] + uint32_t{before[3]} * fine_count[3];
+}
+
 uint32_t rows_of_tile(const PatchSet& patch_set, uint32_t first_row) {
   return std::min(kTileRows, patch_set.height - first_row);
 }
@@ -84,7 +98,7 @@ uint32_t run_index(const PatchSet& patch_set, uint32_t x, uint32_t y) {
 
 // Returns a run with the cells around its texels, and nothing else.
 PatchRun make_run(const PatchSet& patch_set, uint32_t x, uint32_t y) {
-  PatchRun run{0, x, y, std::min(kRunTexels, patch_set.width - x), true, {}, {}};
+  PatchRun run{0, x, y, std::min(kRunTexels, patch_set.width - x), true, {}, {}, {}};
   const uint32_t all = (1u << run.texels) - 1;
   uint32_t here = all, left = all;
   bool row_here = true, row_above = true;
@@ -103,9 +117,10 @@ PatchRun make_run(const PatchSet& patch_set, uint32_t x, uint32_t y) {
 // Returns a run by one of its texels.
 PatchRun run_at(const PatchSet& patch_set, uint32_t x, uint32_t y) {
   PatchRun run = make_run(patch_set, x - x % kRunTexels, y);
-  const uint32_t index = run_index(patch_set, x, y);
-  run.first = patch_set.first[index];
-  run.fine = patch_set.fine[index];
+  const StoredRun& stored = patch_set.runs[run_index(patch_set, x, y)];
+  run.first = stored.first;
+  run.fine = stored.fine;
+  run.fine_count = stored.fine_count;
   return run;
 }
 
@@ -140,9 +155,8 @@ FacetPlace place_of(const PatchSet& patch_set, uint32_t facet) {
 }
 
 int subdivision_at(const PatchSet& patch_set, const FacetPlace& place) {
-  const uint32_t fine =
-      patch_set
-          .fine[run_index(patch_set, place.column, place.row)][place.half == 0 ? kFirstHalf : kSecondHalf];
+  const StoredRun& run = patch_set.runs[run_index(patch_set, place.column, place.row)];
+  const uint32_t fine = run.fine[place.half == 0 ? kFirstHalf : kSecondHalf];
   return (fine >> place.column % kRunTexels & 1) != 0 ? kFineSubdivision : kCoarseSubdivision;
 }
 
@@ -155,9 +169,13 @@ uint32_t patch_at_place(const PatchSet& patch_set, const FacetPlace& place, uint
   const bool wraps = patch_set.columns == patch_set.width;
   const bool inside =
       first_x > 0 && first_x + kRunTexels <= patch_set.columns && y > 0 && y < patch_set.cell_rows;
-  if (slot < kCoarseSlots && (wraps || inside))
-    return patch_set.first[run_index(patch_set, x, y)] +
-           slot * std::min(kRunTexels, patch_set.width - first_x) + lane;
+  if (wraps || inside) {
+    const StoredRun& run = patch_set.runs[run_index(patch_set, x, y)];
+    const uint32_t texels = std::min(kRunTexels, patch_set.width - first_x);
+    if (slot < kCoarseSlots) return run.first + slot * texels + lane;
+    return run.first + kCoarseSlots * texels + fine_patches_before(run.fine_count, slot) +
+           bits_in(run.fine[kFineFacetOf[slot]] & ((1u << lane) - 1));
+  }
   const PatchRun run = run_at(patch_set, x, y);
   return run.first_of(slot) + bits_in(run.texels_with(slot) & ((1u << lane) - 1));
 }
@@ -169,10 +187,11 @@ uint32_t patches_of_run(const PatchRun& run) {
 }
 
 // Finds the finely cut facets around the texels of all runs.
-std::vector<std::array<uint16_t, 4>> find_fine_facets(const Surface& surface, const PatchSet& patch_set) {
-  std::vector<std::array<uint16_t, 4>> fine(size_t{patch_set.runs_in_row} * patch_set.height);
+void find_fine_facets(const Surface& surface, PatchSet& patch_set) {
   const auto mark = [&](uint32_t x, uint32_t y, FineFacet facet) {
-    fine[run_index(patch_set, x, y)][facet] |= static_cast<uint16_t>(1u << x % kRunTexels);
+    StoredRun& run = patch_set.runs[run_index(patch_set, x, y)];
+    run.fine[facet] |= static_cast<uint16_t>(1u << x % kRunTexels);
+    ++run.fine_count[facet];
   };
   for (uint32_t row = 0; row < patch_set.cell_rows; ++row)
     for (uint32_t column = 0; column < patch_set.columns; column += kRunTexels) {
@@ -186,7 +205,6 @@ std::vector<std::array<uint16_t, 4>> find_fine_facets(const Surface& surface, co
         mark(x, row + 1 == patch_set.height ? 0 : row + 1, kAboveTexel);
       }
     }
-  return fine;
 }
 
 }  // namespace
@@ -204,19 +222,20 @@ PatchSet make_patches(const Surface& surface, PatchKind kind) {
   patch_set.inverse_columns = 1.0 / std::max(1u, patch_set.columns);
   patch_set.runs_in_row = (patch_set.width + kRunTexels - 1) / kRunTexels;
   patch_set.cell_rows = patch_set.columns == 0 ? 0 : facet_count(surface) / 2 / patch_set.columns;
-  patch_set.fine = find_fine_facets(surface, patch_set);
+  patch_set.runs.resize(size_t{patch_set.runs_in_row} * patch_set.height);
+  find_fine_facets(surface, patch_set);
   uint64_t count = 0;
   for (uint32_t first_row = 0; first_row < patch_set.height; first_row += kTileRows)
     for (uint32_t x = 0; x < patch_set.width; x += kRunTexels)
       for (uint32_t y = first_row; y < first_row + rows_of_tile(patch_set, first_row); ++y) {
-        patch_set.first.push_back(static_cast<uint32_t>(count));
+        patch_set.runs[run_index(patch_set, x, y)].first = static_cast<uint32_t>(count);
         count += patches_of_run(run_at(patch_set, x, y));
         if (count > kMaxPatches)
           throw InputError(
               fmt::format("more than {} patches, expected a smaller map, or texels as patches", kMaxPatches));
       }
   patch_set.count = static_cast<uint32_t>(count);
-  patch_set.first.push_back(patch_set.count);
+  patch_set.runs.push_back({patch_set.count, {}, {}});
   return patch_set;
 }
 
@@ -231,7 +250,7 @@ uint32_t node_at(int k, int column, int row) {
 
 uint32_t PatchRun::texels_with(uint32_t slot) const {
   const NodeSlot& node = kNodeSites.slots[slot];
-  if (slot >= kCoarseSlots) return fine[fine_facet(node)];
+  if (slot >= kCoarseSlots) return fine[kFineFacetOf[slot]];
   return cells[static_cast<size_t>(node.left + 2 * node.up)];
 }
 
@@ -242,15 +261,14 @@ uint32_t PatchRun::first_of(uint32_t slot) const {
     begin = first;
     for (uint32_t before = 0; before < coarse; ++before) begin += bits_in(texels_with(before));
   }
-  if (slot <= kCoarseSlots) return begin;
-  for (size_t facet = 0; facet < fine.size(); ++facet)
-    begin += kFineBefore[slot][facet] * bits_in(fine[facet]);
-  return begin;
+  return slot <= kCoarseSlots ? begin : begin + fine_patches_before(fine_count, slot);
 }
 
 PatchRun run_of_patch(const PatchSet& patch_set, uint32_t patch) {
-  const auto after = std::upper_bound(patch_set.first.begin(), patch_set.first.end(), patch);
-  const auto run = static_cast<uint32_t>(after - patch_set.first.begin() - 1);
+  const auto after =
+      std::upper_bound(patch_set.runs.begin(), patch_set.runs.end(), patch,
+                       [](uint32_t wanted, const StoredRun& run) { return wanted < run.first; });
+  const auto run = static_cast<uint32_t>(after - patch_set.runs.begin() - 1);
   const uint32_t first_row = run / (kTileRows * patch_set.runs_in_row) * kTileRows;
   const uint32_t in_row_of_tiles = run - first_row * patch_set.runs_in_row,
                  rows = rows_of_tile(patch_set, first_row);

@@ -31,6 +31,17 @@ constexpr uint32_t node_count(int k) { return static_cast<uint32_t>((k + 1) * (k
 inline constexpr uint32_t kCoarseNodes = node_count(kCoarseSubdivision);
 static_assert(kFineNodes == node_count(kFineSubdivision));
 
+// The facets around a texel on whose finer nodes' sites others stand: both halves of its cell, and the second
+// half of the cells left of it and above it.
+enum FineFacet : uint8_t { kFirstHalf, kSecondHalf, kLeftOfTexel, kAboveTexel };
+
+// First patch of sixteen neighbouring texels, and by FineFacet which of their facets are cut finely.
+struct StoredRun {
+  uint32_t first;
+  std::array<uint16_t, 4> fine;       // bits of texels
+  std::array<uint8_t, 4> fine_count;  // of these bits
+};
+
 // The patches of a surface. Nodes are numbered run by run, in a run by slot (surface/node_sites.h), then by
 // texel: nodes that stand at the same place, and the same node of neighbouring texels, come one after the
 // other and can be traced together. Runs are numbered tile by tile, a tile being a run and those below it:
@@ -39,17 +50,12 @@ struct PatchSet {
   PatchKind kind = PatchKind::kFacets;
   uint32_t count = 0;
   // kFacets only:
-  uint32_t columns = 0, cell_rows = 0;        // cells
-  double inverse_columns = 0;                 // 1 / columns
-  uint32_t width = 0, height = 0;             // texels
-  uint32_t runs_in_row = 0;                   // ⌈width / kRunTexels⌉
-  std::vector<uint32_t> first;                // first patch of every run, and `count` at the end
-  std::vector<std::array<uint16_t, 4>> fine;  // [run][FineFacet]: bits of the texels where it is cut finely
+  uint32_t columns = 0, cell_rows = 0;  // cells
+  double inverse_columns = 0;           // 1 / columns
+  uint32_t width = 0, height = 0;       // texels
+  uint32_t runs_in_row = 0;             // ⌈width / kRunTexels⌉
+  std::vector<StoredRun> runs;          // and one that begins at `count`
 };
-
-// The facets around a texel on whose finer nodes' sites others stand: both halves of its cell, and the second
-// half of the cells left of it and above it.
-enum FineFacet : uint8_t { kFirstHalf, kSecondHalf, kLeftOfTexel, kAboveTexel };
 
 // Makes the patches of a surface. Throws InputError for more than 2^31 of them.
 PatchSet make_patches(const Surface& surface, PatchKind kind);
@@ -85,7 +91,8 @@ struct PatchRun {
   uint32_t texels;
   bool whole;                     // all cells around its texels exist
   std::array<uint16_t, 4> cells;  // bits of texels: the cell `left` + 2 `up` before their own exists
-  std::array<uint16_t, 4> fine;   // as in PatchSet
+  std::array<uint16_t, 4> fine;   // as in StoredRun
+  std::array<uint8_t, 4> fine_count;
 
   // Returns the bits of the texels that have a slot's node.
   uint32_t texels_with(uint32_t slot) const;

@@ -64,13 +64,13 @@ TEST(PatchKind, ATileIsOnePieceOfMemory) {
   for (const uint32_t first_row : {0u, 16u})
     for (const uint32_t x : {0u, 16u, 32u})
       for (uint32_t y = first_row; y < std::min(21u, first_row + 16); ++y, ++run) {
-        if (patches.first[run] == patches.first[run + 1]) continue;
-        const PatchRun found = run_of_patch(patches, patches.first[run]);
+        if (patches.runs[run].first == patches.runs[run + 1].first) continue;
+        const PatchRun found = run_of_patch(patches, patches.runs[run].first);
         EXPECT_EQ(found.x, x);
         EXPECT_EQ(found.y, y);
-        EXPECT_EQ(run_of_patch(patches, patches.first[run + 1] - 1).first, found.first);
+        EXPECT_EQ(run_of_patch(patches, patches.runs[run + 1].first - 1).first, found.first);
       }
-  EXPECT_EQ(patches.first.size(), run + 1);
+  EXPECT_EQ(patches.runs.size(), run + 1);
 }
 
 // What stands at one place comes in one slot after the other, of one run.
