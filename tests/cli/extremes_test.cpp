@@ -162,7 +162,7 @@ TEST_F(Converge, TexelsLeftShortAreNamedInOneLine) {
 TEST_F(Converge, FacetsFillThePublishedWall) {
   const fs::path wall = fs::path(HEMIBAKE_REFERENCE_DIR) / "WallHeight.png";
   if (!fs::exists(wall)) GTEST_SKIP() << wall << " is not there";
-  expect_pi_everywhere("'" + wall.string() + "' --rays 32");
+  expect_pi_everywhere(fmt::format("'{}' --rays 32", wall.string()));
 }
 
 }  // namespace
