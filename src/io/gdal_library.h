@@ -18,7 +18,7 @@ namespace hemibake {
   use(CPLGetErrorHandlerUserData) use(CPLPopErrorHandler) use(CPLPushErrorHandlerEx) use(                    \
       CPLQuietErrorHandler) use(CPLSetConfigOption) use(CPLSetErrorHandler) use(CSLDestroy) use(GDALClose)   \
       use(GDALCreate) use(GDALDatasetRasterIO) use(GDALGetBlockSize) use(GDALGetDataTypeName) use(           \
-          GDALGetDataTypeSizeBits) use(GDALGetDatasetDriver) use(GDALGetDescription)                         \
+          GDALGetDataTypeSizeBits) use(GDALGetDatasetDriver) use(GDALGetDescription) use(GDALGetFileList)    \
           use(GDALGetDriverByName) use(GDALGetDriverLongName) use(GDALGetDriverShortName) use(               \
               GDALGetGeoTransform) use(GDALGetMaskBand) use(GDALGetMaskFlags) use(GDALGetMetadata)           \
               use(GDALGetRasterBand) use(GDALGetRasterColorInterpretation) use(                              \

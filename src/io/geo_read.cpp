@@ -96,6 +96,28 @@ GdalDataset open_dataset(const GdalLibrary& gdal, const fs::path& path) {
   return dataset;
 }
 
+// Texels that a byte of a file can hold: Deflate makes at most 1032 equal bytes of one.
+constexpr double kMostTexelsPerByte = 1032;
+
+// Refuses a raster that its files are far too short for: memory would be set aside for what a header claims.
+// GeoTIFFs may leave tiles out, and a VRT stands for other files.
+void check_files_hold(const GeoRaster& raster) {
+  const GdalLibrary& gdal = raster.gdal;
+  const std::string driver = gdal.GDALGetDriverShortName(gdal.GDALGetDatasetDriver(raster.dataset));
+  if (driver == "GTiff" || driver == "VRT") return;
+  double bytes = 0;
+  char** const files = gdal.GDALGetFileList(raster.dataset);
+  for (char** file = files; file && *file; ++file) {
+    std::error_code not_there;
+    const auto size = fs::file_size(*file, not_there);
+    if (!not_there) bytes += static_cast<double>(size);
+  }
+  gdal.CSLDestroy(files);
+  if (bytes > 0 && static_cast<double>(raster.width) * raster.height > kMostTexelsPerByte * bytes)
+    throw InputError(fmt::format("claims {} x {} texels and has only {:.0f} bytes, expected a whole file",
+                                 raster.width, raster.height, bytes));
+}
+
 GeoRaster checked_raster(const GdalLibrary& gdal, GDALDatasetH dataset, const fs::path& path) {
   const GeoRaster raster{gdal, dataset, path, gdal.GDALGetRasterXSize(dataset),
                          gdal.GDALGetRasterYSize(dataset)};
@@ -104,6 +126,7 @@ GeoRaster checked_raster(const GdalLibrary& gdal, GDALDatasetH dataset, const fs
   if (static_cast<uint64_t>(raster.width) * static_cast<uint64_t>(raster.height) > kMaxTexels)
     throw InputError(
         fmt::format("claims {} x {} texels, expected at most {}", raster.width, raster.height, kMaxTexels));
+  check_files_hold(raster);
   const double texels = static_cast<double>(raster.width) * raster.height;
   int block_width = 0, block_height = 0;
   gdal.GDALGetBlockSize(gdal.GDALGetRasterBand(dataset, 1), &block_width, &block_height);

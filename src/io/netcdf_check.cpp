@@ -14,7 +14,11 @@ constexpr uint64_t kClassicMark = 0x434446;  // "CDF"
 constexpr uint64_t kMostItems = 1 << 16;     // of a list; more is no header
 constexpr uint64_t kPadding = 4;
 
-// Walks a header as the file format specification of netCDF (Unidata) lists it.
+constexpr uint64_t kTypeBytes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};  // by number
+constexpr uint64_t kStreaming = 0xffffffff;  // records of a file that was not closed
+
+// Walks a header as the file format specification of netCDF (Unidata) lists it. The library sets memory aside
+// for what dimensions say, whatever length a variable claims: both are looked at.
 class ClassicHeader {
  public:
   explicit ClassicHeader(const std::filesystem::path& path) : file_(path) {
@@ -27,10 +31,10 @@ class ClassicHeader {
 
   bool is_classic() const { return is_classic_; }
 
-  // Returns where the last byte of the variables without records would be; 0: the header is none.
+  // Returns where the last byte of header and variables would be; 0: the header is none.
   uint64_t end_of_variables() {
     position_ = 4;
-    take(count_bytes_);  // records
+    records_ = take(count_bytes_);
     std::vector<uint64_t> lengths;
     for (uint64_t i = 0, count = take_list(); i < count; ++i) {
       skip_name();
@@ -39,7 +43,7 @@ class ClassicHeader {
     skip_attributes();
     uint64_t end = 0;
     for (uint64_t i = 0, count = take_list(); i < count; ++i) end = std::max(end, end_of_variable(lengths));
-    return is_whole_ ? end : 0;
+    return is_whole_ && end > 0 ? std::max(end, position_) : 0;
   }
 
  private:
@@ -57,17 +61,18 @@ class ClassicHeader {
     return is_whole_ ? count : 0;
   }
 
-  void skip_padded(uint64_t bytes) { position_ += (bytes + kPadding - 1) / kPadding * kPadding; }
+  void skip_padded(uint64_t bytes) {
+    position_ += (std::min(bytes, kMost) + kPadding - 1) / kPadding * kPadding;
+    if (position_ > kMost) is_whole_ = false;
+  }
   void skip_name() { skip_padded(take(count_bytes_)); }
 
   void skip_attributes() {
-    constexpr uint64_t kBytes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};  // of the types by number
     for (uint64_t i = 0, count = take_list(); i < count; ++i) {
       skip_name();
-      const uint64_t type = take(4);
-      if (type >= std::size(kBytes)) is_whole_ = false;
+      const uint64_t bytes = take_type();
       if (!is_whole_) return;
-      skip_padded(take(count_bytes_) * kBytes[type]);
+      skip_padded(times(take(count_bytes_), bytes));
     }
   }
 
@@ -76,21 +81,38 @@ class ClassicHeader {
     const uint64_t dimensions = take(count_bytes_);
     if (dimensions > lengths.size()) is_whole_ = false;
     bool has_records = false;
+    uint64_t values = 1;
     for (uint64_t d = 0; is_whole_ && d < dimensions; ++d) {
       const uint64_t index = take(count_bytes_);
-      has_records = has_records || index >= lengths.size() || lengths[index] == 0;
+      if (index >= lengths.size()) is_whole_ = false;
+      if (!is_whole_) return 0;
+      has_records = has_records || lengths[index] == 0;
+      if (lengths[index] > 0) values = times(values, lengths[index]);
     }
     skip_attributes();
-    take(4);  // type
-    const uint64_t size = take(count_bytes_);
-    const uint64_t begin = take(offset_bytes_);
-    return has_records ? 0 : begin + size - std::min(size, kPadding - 1);
+    const uint64_t type_bytes = take_type();
+    const uint64_t claimed = take(count_bytes_), begin = take(offset_bytes_);
+    if (begin > kMost) is_whole_ = false;
+    const uint64_t bytes = times(values, type_bytes);
+    if (has_records) return records_ == kStreaming ? 0 : begin + times(bytes, records_);
+    return begin + std::max(bytes, claimed - std::min(claimed, kPadding - 1));
   }
 
+  // Returns the bytes of a value of the type that comes.
+  uint64_t take_type() {
+    const uint64_t type = take(4);
+    if (type >= std::size(kTypeBytes)) is_whole_ = false;
+    return is_whole_ ? kTypeBytes[type] : 0;
+  }
+
+  // Returns a product, or the most that a file can have.
+  static uint64_t times(uint64_t a, uint64_t b) { return b > 0 && a > kMost / b ? kMost : a * b; }
+
+  static constexpr uint64_t kMost = uint64_t{1} << 60;
   ByteReader file_;
   bool is_classic_ = false, is_whole_ = true;
   int count_bytes_ = 4, offset_bytes_ = 4;
-  uint64_t position_ = 0;
+  uint64_t position_ = 0, records_ = 0;
 };
 
 }  // namespace
