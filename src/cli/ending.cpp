@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <new>
+#include <string_view>
 #include <system_error>
 
 #include "cli/print/streams.h"
@@ -12,6 +13,9 @@
 
 namespace hemibake {
 namespace {
+
+// What oneTBB throws, as a plain runtime_error, where it can have no thread.
+constexpr std::string_view kNoThread = "pthread_create has failed";
 
 Ending internal_error(const std::string& what) {
   return {kExitInternalError,
@@ -47,6 +51,9 @@ Ending ending_of(const std::exception_ptr& exception) {
     return {kExitBadInput,
             fmt::format("the system refused: {}, expected fewer --threads", error.code().message())};
   } catch (const std::exception& error) {
+    if (std::string_view(error.what()).starts_with(kNoThread))
+      return {kExitBadInput,
+              "the system refused another thread, expected more memory for it or fewer --threads"};
     return internal_error(error.what());
   } catch (...) {
     return internal_error("an exception of an unknown type");

@@ -28,6 +28,9 @@ TEST(Ending, OfWhatIsExpected) {
   EXPECT_EQ(ending_with(std::bad_alloc()).exit_code, 2);
   EXPECT_EQ(ending_with(std::bad_array_new_length()).exit_code, 2);
   EXPECT_EQ(ending_with(std::system_error(EAGAIN, std::generic_category())).exit_code, 2);
+  EXPECT_EQ(ending_with(std::runtime_error("pthread_create has failed: Resource temporarily unavailable"))
+                .exit_code,
+            2);
 }
 
 TEST(Ending, OfWhatEscaped) {
