@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "io/file_context.h"
 #include "io/png_check.h"
+#include "io/targa_check.h"
 #include "surface/surface.h"
 
 namespace hemibake {
@@ -104,6 +105,8 @@ void check_before_opening(const ChannelReader& reader, const ImageFormat& format
     constexpr double kBytesPerRow = 32;  // of the table of offsets, and copies of it
     check_memory(reader, kBytesPerRow * static_cast<double>(claim.height), claim.width, claim.height);
   }
+  if (format.reader == std::string_view("targa"))
+    if (const std::string fault = targa_error(reader.path()); !fault.empty()) reader.refuse(fault);
   if (format.reader != std::string_view("png")) return;
   PngHeader header;
   if (const std::string fault = png_header_error(reader.path(), header); !fault.empty()) reader.refuse(fault);
