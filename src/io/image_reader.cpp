@@ -11,6 +11,7 @@
 #include "core/context.h"
 #include "core/memory_limit.h"
 #include "core/parallel.h"
+#include "io/byte_reader.h"
 #include "io/file_context.h"
 #include "io/png_check.h"
 #include "io/targa_check.h"
@@ -84,6 +85,26 @@ void check_memory(const ChannelReader& reader, double bytes, int64_t width, int6
                     [&] { require_memory(bytes, fmt::format("{} x {} texels", width, height)); });
 }
 
+// Refuses a BMP in run lengths that claims more texels than its bytes can hold: two bytes make 255 of them at
+// most, and the library sets memory aside for all on opening.
+void check_bmp_runs(const ChannelReader& reader) {
+  ByteReader file(reader.path());
+  constexpr uint64_t kLongHeader = 40, kMostTexelsPerByte = 128;
+  const uint64_t compression = file.at(30, 4);
+  if (file.at(14, 4) < kLongHeader || (compression != 1 && compression != 2)) return;
+  const auto side = [&](uint64_t place) {
+    return std::abs(int64_t{static_cast<int32_t>(static_cast<uint32_t>(file.at(place, 4)))});
+  };
+  const int64_t width = side(18), height = side(22);
+  check_size(reader, width, height);
+  check_memory(reader, static_cast<double>(width) * static_cast<double>(height), width, height);
+  std::error_code gone;
+  const uint64_t bytes = std::filesystem::file_size(reader.path(), gone);
+  if (gone || static_cast<uint64_t>(width) * static_cast<uint64_t>(height) > kMostTexelsPerByte * bytes)
+    reader.refuse(fmt::format("claims {} x {} texels and has only {} bytes, expected a whole BMP", width,
+                              height, bytes));
+}
+
 // Refuses what a header claims before the library, which would take its memory on opening, sees the file.
 void check_before_opening(const ChannelReader& reader, const ImageFormat& format) {
   if (format.reader == std::string_view("jpeg2000")) {
@@ -105,6 +126,7 @@ void check_before_opening(const ChannelReader& reader, const ImageFormat& format
     constexpr double kBytesPerRow = 32;  // of the table of offsets, and copies of it
     check_memory(reader, kBytesPerRow * static_cast<double>(claim.height), claim.width, claim.height);
   }
+  if (format.reader == std::string_view("bmp")) check_bmp_runs(reader);
   if (format.reader == std::string_view("targa"))
     if (const std::string fault = targa_error(reader.path()); !fault.empty()) reader.refuse(fault);
   if (format.reader != std::string_view("png")) return;

@@ -213,5 +213,19 @@ TEST_F(ImageRefusals, RefusesCroppedExr) {
               HasSubstr("data window of 2 x 2 at (1, 0) in a display window of 4 x 4 at (0, 0)"));
 }
 
+// The library sets aside what the header claims when it opens run lengths.
+TEST_F(ImageRefusals, RefusesABmpOfRunsThatClaimsMoreThanItHolds) {
+  const auto number = [](uint32_t value) {
+    std::string bytes;
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(value >> shift);
+    return bytes;
+  };
+  std::string bmp = "BM" + number(60) + number(0) + number(54) + number(40) + number(20000) + number(20000);
+  bmp += std::string("\1\0\x08\0", 4) + number(1);  // a plane of 8 bits in run lengths
+  bmp.resize(60);
+  write_bytes(folder_ / "runs.bmp", bmp);
+  EXPECT_THAT(refusal("runs.bmp"), HasSubstr("claims 20000 x 20000 texels and has only 60 bytes"));
+}
+
 }  // namespace
 }  // namespace hemibake
