@@ -14,7 +14,7 @@
 namespace hemibake {
 namespace {
 
-// What oneTBB throws, as a plain runtime_error, where it can have no thread.
+// Begins what oneTBB throws, as a plain runtime_error, where it can have no thread.
 constexpr std::string_view kNoThread = "pthread_create has failed";
 
 Ending internal_error(const std::string& what) {

@@ -74,7 +74,7 @@ void write_results(const fs::path& folder, const Study& study, nlohmann::ordered
   OutputFile& table = files.add(folder / "trade.csv");
   write_trade_csv(table, study);
   json["files"] = hashes_of({&table});
-  // What the study wrote on its way, and another one in the folder may have begun to replace.
+  // Adds what the study wrote on its way, and another one in the folder may have begun to replace.
   std::vector<std::string> names = {"reference.exr"};
   for (const nlohmann::ordered_json& picture : json["pictures"]) names.push_back(picture["file"]);
   for (const std::string& name : names) json["files"][name] = sha256_of_file(folder / name);

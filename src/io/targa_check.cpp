@@ -5,13 +5,14 @@
 
 #include <string_view>
 
+#include "io/byte_reader.h"
 #include "io/input_file.h"
 
 namespace hemibake {
 namespace {
 
 constexpr size_t kHeaderBytes = 18;
-constexpr int kPalette = 1, kPaletteByRuns = 9;  // kinds of images
+constexpr uint64_t kPalette = 1, kPaletteByRuns = 9;  // kinds of images
 constexpr const char* kCutShort = "is cut short, expected a whole TGA";
 
 struct TargaHeader {
@@ -60,9 +61,12 @@ std::string index_fault(std::string_view bytes, const TargaHeader& header) {
 }  // namespace
 
 std::string targa_error(const std::filesystem::path& path) {
+  std::error_code gone;
+  if (const auto size = std::filesystem::file_size(path, gone); gone || size < kHeaderBytes) return kCutShort;
+  const uint64_t kind = ByteReader(path).at(2, 1);
+  if (kind != kPalette && kind != kPaletteByRuns) return "";
   const std::string bytes = read_whole_file(path);
   if (bytes.size() < kHeaderBytes) return kCutShort;
-  if (bytes[2] != kPalette && bytes[2] != kPaletteByRuns) return "";
   const TargaHeader header = read_header(bytes);
   if (header.colors == 0 || header.index_bytes < 1 || header.index_bytes > 2)
     return "has a damaged palette, expected indices of 8 or 16 bits into colours";

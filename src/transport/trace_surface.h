@@ -34,7 +34,7 @@ struct LightTransport {
   }
 };
 
-// What is kept of the view of texels and patches: their sky; the form factors of texels too, for one bounce;
+// Says what is kept of what texels and patches see: their sky; texels' form factors too, for one bounce;
 // or those of patches as well, for any number.
 enum class KeptLinks { kNone, kOfTexels, kAll };
 

@@ -1,4 +1,4 @@
-// What slices are traced in: the surface, its heights laid out for packets, and the paths of all receivers.
+// Holds what slices are traced in: the surface, its heights for packets, and the paths of all receivers.
 #pragma once
 
 #include "surface/patches.h"
